@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/mem.h"
+
+#include <stdalign.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+enum { ALIGNMENT = 64, BLOCK_BYTES = 256 * 1024 };
+
+struct arena_block {
+    alignas(64) struct arena_block *previous;
+    size_t used, size; // bytes after this header
+};
+
+static _Noreturn void out_of_memory(size_t count, size_t size, const char *file, int line) {
+    fprintf(stderr, "relume: out of memory: %zu x %zu bytes at %s:%d\n", count, size, file, line);
+    abort();
+}
+
+void *mem_array_at(size_t count, size_t size, const char *file, int line) {
+    if (size && count > (SIZE_MAX - ALIGNMENT) / size)
+        out_of_memory(count, size, file, line);
+    size_t bytes = count * size;
+    bytes = (bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1); // never zero
+    void *p = aligned_alloc(ALIGNMENT, bytes);
+    if (!p)
+        out_of_memory(count, size, file, line);
+    return memset(p, 0, bytes);
+}
+
+void mem_free(void *p) {
+    free(p);
+}
+
+void mem_grow_at(void **data, size_t *capacity, size_t need, size_t size, const char *file,
+                 int line) {
+    if (need <= *capacity)
+        return;
+    size_t wanted = *capacity < 8 ? 8 : *capacity;
+    while (wanted < need)
+        wanted = wanted > SIZE_MAX / 2 ? need : wanted * 2;
+    void *bigger = mem_array_at(wanted, size, file, line);
+    if (*capacity)
+        memcpy(bigger, *data, *capacity * size);
+    mem_free(*data);
+    *data = bigger;
+    *capacity = wanted;
+}
+
+size_t mem_peak(void) {
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? (size_t)usage.ru_maxrss * 1024 : 0;
+}
+
+void *arena_alloc(struct arena *a, size_t size) {
+    const size_t align = size >= 64 ? 64 : 16;
+    struct arena_block *b = a->last;
+    size_t start = b ? (b->used + align - 1) & ~(align - 1) : 0;
+    if (!b || start > b->size || size > b->size - start) {
+        const size_t bytes = size > BLOCK_BYTES ? size : BLOCK_BYTES;
+        if (bytes > SIZE_MAX - 2 * sizeof *b)
+            out_of_memory(1, size, __FILE__, __LINE__);
+        b = mem_array(1, sizeof *b + bytes);
+        b->size = bytes;
+        b->previous = a->last;
+        a->last = b;
+        start = 0;
+    }
+    b->used = start + size;
+    a->total += size;
+    return (char *)(b + 1) + start;
+}
+
+char *arena_strdup(struct arena *a, const char *s) {
+    const size_t n = strlen(s) + 1;
+    return memcpy(arena_alloc(a, n), s, n);
+}
+
+char *arena_printf(struct arena *a, const char *format, ...) {
+    va_list args, again;
+    va_start(args, format);
+    va_copy(again, args);
+    const int n = vsnprintf(NULL, 0, format, args);
+    char *s = arena_alloc(a, (size_t)(n < 0 ? 0 : n) + 1);
+    vsnprintf(s, (size_t)(n < 0 ? 0 : n) + 1, format, again);
+    va_end(again);
+    va_end(args);
+    return s;
+}
+
+void arena_finish(struct arena *a) {
+    for (struct arena_block *b = a->last; b;) {
+        struct arena_block *previous = b->previous;
+        mem_free(b);
+        b = previous;
+    }
+    *a = (struct arena){0};
+}
