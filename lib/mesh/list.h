@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mesh file formats, one a line; each is mesh/NAME.c.
