@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reconstruction filters, one a line; each is filter/NAME.c.

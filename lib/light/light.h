@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light sources.
+//
+// Conventions: wi points from the lit point towards the light, unit. Emission is what arrives:
+// radiance in W/(sr m^2) for area and infinite lights; for delta lights the factor that makes
+// `emission / pdf` the incident irradiance per unit cosine (intensity / distance^2, irradiance).
+// pdf_sa is per solid angle at the lit point, 1 for delta lights.
+#pragma once
+
+#include "base/registry.h"
+#include "math/ray.h"
+#include "math/transform.h"
+#include "math/vec.h"
+#include "scene/scene.h"
+#include "texture/texture.h"
+
+struct light_sample {
+    vec3 wi;
+    float distance;    // INFINITY for infinite lights
+    float pdf_sa;      // > 0
+    spectrum emission; // towards the lit point
+    bool delta;        // no other technique can find this light
+    vec3 p, p_error;   // point on the light and its rounding error; unused when infinite
+    vec3 n;            // normal there, for offsetting; zero: do not offset
+};
+
+// A point of a light that was found by a ray. Infinite lights use wi only.
+struct light_hit {
+    vec3 wi;        // direction of the ray that found it, from the lit point towards the light
+    float distance;
+    vec3 ng;        // geometric normal there, unit (outwards, flip_normals applied)
+    struct texture_point at;
+};
+
+// What a light needs to know of the world it stands in.
+struct light_scene {
+    vec3 centre; // of a sphere around all shapes
+    float radius; // > 0
+    const struct shape *shape; // the area light's shape; else NULL
+};
+
+struct light_type {
+    struct entry entry;
+    bool infinite; // found by rays that leave the scene
+    bool delta;
+    // After reading, with texture objects already prepared. false after an error message.
+    bool (*prepare)(struct object *self, const struct light_scene *scene, struct arena *arena);
+    // false: this light cannot light that point
+    bool (*sample)(const void *data, vec3 p, struct vec2 u, struct light_sample *s);
+    // Radiance along the ray that found it (towards -wi). NULL for delta lights.
+    spectrum (*emission)(const void *data, const struct light_hit *hit);
+    // sample's density of finding this point of the light from p. NULL for delta lights.
+    float (*pdf_sa)(const void *data, vec3 p, const struct light_hit *hit);
+    // Mean emitted power in W (luminance), an estimate for choosing lights.
+    float (*power)(const void *data);
+    void (*finish)(void *data); // NULL: nothing to do
+};
+
+#define X(name) extern const struct light_type light_##name;
+#include "light/list.h"
+#undef X
+
+extern const struct registry lights;
+
+static inline const struct light_type *light_type_of(const struct object *o) {
+    return (const struct light_type *)o->type;
+}

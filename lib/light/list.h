@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lights, one a line; each is light/NAME.c.

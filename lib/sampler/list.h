@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samplers, one a line; each is sampler/NAME.c.

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samplers: the random numbers of a path.
+//
+// Every number is a function of (pixel, sample index, dimension, seed), never of the thread. A
+// sampler is a small value that the integrator carries; dimensions are consumed in order.
+//
+// Replicates: sample i of a pixel belongs to replicate i % replicates, as its point number
+// i / replicates; replicates are scrambled independently, so the spread of their means is an honest
+// error estimate also for stratified points.
+#pragma once
+
+#include "base/registry.h"
+#include "math/hash.h"
+#include "math/vec.h"
+
+struct sampler {
+    const struct sampler_type *type;
+    uint32_t seed;      // of this pixel and replicate
+    uint32_t index;     // point number inside the replicate
+    uint32_t count;     // points a replicate will have in all (stratified kinds need it); >= 1
+    uint32_t dimension; // next dimension
+};
+
+struct sampler_type {
+    struct entry entry;
+    float (*next_1d)(struct sampler *s); // in [0, 1)
+    struct vec2 (*next_2d)(struct sampler *s);
+    bool independent; // points are independent: the running variance is a true error estimate
+};
+
+#define X(name) extern const struct sampler_type sampler_##name;
+#include "sampler/list.h"
+#undef X
+
+extern const struct registry samplers;
+
+// spp: samples the pixel will have in all; replicates: power of two, at most 16.
+static inline struct sampler sampler_start(const struct sampler_type *type, uint32_t x, uint32_t y,
+                                           uint32_t sample, uint32_t spp, uint32_t replicates,
+                                           uint32_t seed) {
+    const uint32_t replicate = sample % replicates;
+    const uint32_t h = hash_combine(hash_combine(hash_combine(seed, x), y), replicate);
+    const uint32_t count = (spp + replicates - 1) / replicates;
+    return (struct sampler){type, h, sample / replicates, count ? count : 1, 0};
+}
+
+static inline float sampler_1d(struct sampler *s) {
+    return s->type->next_1d(s);
+}
+
+static inline struct vec2 sampler_2d(struct sampler *s) {
+    return s->type->next_2d(s);
+}

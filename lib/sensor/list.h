@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sensors, one a line; each is sensor/NAME.c.

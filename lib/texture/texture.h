@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Textures: colours and scalars that vary over a surface.
+//
+// A parameter that may be textured is a struct texture_ref: a constant, or a texture. A scene
+// without textures therefore runs no texture code. Colours are linear Rec.709 after reading.
+#pragma once
+
+#include "base/mem.h"
+#include "base/registry.h"
+#include "math/vec.h"
+#include "mesh/mesh.h"
+
+// Where a texture is looked up.
+struct texture_point {
+    struct vec2 uv;
+    const struct mesh *mesh; // NULL: not a mesh
+    uint32_t triangle;
+    struct vec2 barycentric; // weights of vertices 1 and 2
+};
+
+struct texture_ref {
+    spectrum value;               // the constant, when texture is NULL
+    const struct object *texture; // of a struct texture_type
+};
+
+struct texture_type {
+    struct entry entry;
+    // After the parameters are filled: reads files, builds tables; memory from the arena or owned
+    // until finish. false after an error message.
+    bool (*prepare)(void *data, struct arena *arena);
+    spectrum (*eval)(const void *data, const struct texture_point *at);
+    // Gradient of lane-mean with respect to (u, v), for bump maps. NULL: by finite differences.
+    struct vec2 (*gradient)(const void *data, const struct texture_point *at);
+    // Mean over the unit square, for sampling decisions and previews.
+    spectrum (*mean)(const void *data);
+    void (*finish)(void *data); // NULL: nothing to do
+};
+
+#define X(name) extern const struct texture_type texture_##name;
+#include "texture/list.h"
+#undef X
+
+extern const struct registry textures;
+
+static inline const struct texture_type *texture_type_of(const struct object *o) {
+    return (const struct texture_type *)o->type;
+}
+
+static inline spectrum texture_eval(const struct texture_ref *r, const struct texture_point *at) {
+    return r->texture ? texture_type_of(r->texture)->eval(r->texture->data, at) : r->value;
+}
+
+static inline float texture_eval_scalar(const struct texture_ref *r,
+                                        const struct texture_point *at) {
+    return texture_eval(r, at)[0];
+}
+
+static inline spectrum texture_mean(const struct texture_ref *r) {
+    return r->texture ? texture_type_of(r->texture)->mean(r->texture->data) : r->value;
+}
+
+struct vec2 texture_gradient(const struct texture_ref *r, const struct texture_point *at);
