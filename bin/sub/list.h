@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands, in the order in which --help lists them: one X(name) line each.

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "base/registry.h"
+
+enum { FIRST_LONG = 256, MOST_OPTIONS = 96 };
+
+static size_t option_count(const struct option_table *table) {
+    size_t n = 0;
+    while (table->options && table->options[n].name)
+        n++;
+    return n;
+}
+
+static bool in_range(const struct option_spec *o, double v) {
+    return isfinite(v) && ((o->min == 0 && o->max == 0) || (v >= o->min && v <= o->max));
+}
+
+static bool complain(const struct option_spec *o, const char *text, const char *kind) {
+    if (o->min == 0 && o->max == 0)
+        log_error("--%s: found '%s', expected %s", o->name, text, kind);
+    else
+        log_error("--%s: found '%s', expected %s from %.10g to %.10g", o->name, text, kind, o->min,
+                  o->max);
+    return false;
+}
+
+static bool parse_integer(const struct option_spec *o, const char *text, void *value) {
+    char *end;
+    errno = 0;
+    const long long v = strtoll(text, &end, 10);
+    if (end == text || *end || errno || v < INT32_MIN || v > INT32_MAX || !in_range(o, (double)v))
+        return complain(o, text, "a whole number");
+    *(int *)value = (int)v;
+    return true;
+}
+
+static bool parse_count(const struct option_spec *o, const char *text, void *value) {
+    char *end;
+    errno = 0;
+    const unsigned long long v = strtoull(text, &end, 10);
+    if (text[0] < '0' || text[0] > '9' || *end || errno || !in_range(o, (double)v))
+        return complain(o, text, "a whole number without sign");
+    *(uint64_t *)value = v;
+    return true;
+}
+
+static bool parse_number(const struct option_spec *o, const char *text, void *value) {
+    char *end;
+    const double v = strtod(text, &end);
+    if (end == text || *end || !in_range(o, v))
+        return complain(o, text, "a number");
+    *(double *)value = v;
+    return true;
+}
+
+static bool parse_seconds(const struct option_spec *o, const char *text, void *value) {
+    char *end;
+    double v = strtod(text, &end);
+    const bool number = end != text;
+    if (*end == 's' || *end == 'm' || *end == 'h')
+        v *= *end == 'h' ? 3600 : *end == 'm' ? 60 : 1, end++;
+    if (!number || *end || !(v > 0) || !in_range(o, v))
+        return complain(o, text, "a duration such as 90, 90s, 15m or 2h");
+    *(double *)value = v;
+    return true;
+}
+
+static bool parse_choice(const struct option_spec *o, const char *text, void *value) {
+    char known[512] = "";
+    size_t n = 0;
+    for (int i = 0; o->choices[i]; i++) {
+        if (strcmp(o->choices[i], text) == 0) {
+            *(int *)value = i;
+            return true;
+        }
+        if (n < sizeof known)
+            n += (size_t)snprintf(known + n, sizeof known - n, "%s%s", i ? ", " : "",
+                                  o->choices[i]);
+    }
+    log_error("--%s: found '%s', expected one of %s", o->name, text, known);
+    return false;
+}
+
+static bool parse_ints(const struct option_spec *o, const char *text, void *value) {
+    const char *p = text;
+    for (int i = 0; i < o->values; i++) {
+        char *end;
+        errno = 0;
+        const long v = strtol(p, &end, 10);
+        const bool last = i == o->values - 1;
+        const bool separated = last ? *end == '\0' : *end == ',' || *end == 'x';
+        if (end == p || !separated || errno || v < INT32_MIN || v > INT32_MAX ||
+            !in_range(o, (double)v)) {
+            log_error("--%s: found '%s', expected %s (whole numbers)", o->name, text, o->argument);
+            return false;
+        }
+        ((int *)value)[i] = (int)v;
+        p = end + 1;
+    }
+    return true;
+}
+
+static void append(struct option_list *list, const char *text) {
+    mem_grow(&list->items, &list->capacity, list->count + 1, sizeof *list->items);
+    list->items[list->count++] = text;
+}
+
+static bool parse_value(const struct option_spec *o, const char *text, void *values) {
+    void *value = (char *)values + o->offset;
+    switch (o->type) {
+    case OPTION_FLAG: *(bool *)value = true; return true;
+    case OPTION_INT: return parse_integer(o, text, value);
+    case OPTION_COUNT: return parse_count(o, text, value);
+    case OPTION_NUMBER: return parse_number(o, text, value);
+    case OPTION_SECONDS: return parse_seconds(o, text, value);
+    case OPTION_TEXT: *(const char **)value = text; return true;
+    case OPTION_CHOICE: return parse_choice(o, text, value);
+    case OPTION_INTS: return parse_ints(o, text, value);
+    case OPTION_TEXTS: append(value, text); return true;
+    }
+    return false;
+}
+
+static void report_unknown(const struct option_table *table, const char *text) {
+    char name[64] = "";
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
+    const char *typed = name + strspn(name, "-"), *nearest = NULL;
+    int best = 3 + (int)strlen(typed) / 3;
+    for (size_t i = 0; i < option_count(table); i++) {
+        const int d = edit_distance(typed, table->options[i].name);
+        if (d < best)
+            best = d, nearest = table->options[i].name;
+    }
+    if (nearest)
+        log_error("unknown option '%s'; the nearest is --%s (see --help)", name, nearest);
+    else
+        log_error("unknown option '%s' (see --help)", name);
+}
+
+static const struct option_spec *spec_of(const struct option_table *table, int code) {
+    const size_t n = option_count(table);
+    if (code >= FIRST_LONG && (size_t)(code - FIRST_LONG) < n)
+        return &table->options[code - FIRST_LONG];
+    for (size_t i = 0; i < n; i++)
+        if (code != 0 && table->options[i].letter == code)
+            return &table->options[i];
+    return NULL;
+}
+
+// The two descriptions that getopt_long wants. The leading ':' makes it tell a missing argument
+// from an unknown option; it prints nothing itself.
+static void describe(const struct option_table *table, char *letters, struct option *longs) {
+    const size_t n = option_count(table);
+    if (n > MOST_OPTIONS) {
+        log_error("a subcommand has more than %d options", MOST_OPTIONS);
+        abort();
+    }
+    *letters++ = ':';
+    for (size_t i = 0; i < n; i++) {
+        const struct option_spec *o = &table->options[i];
+        const bool takes = o->type != OPTION_FLAG;
+        longs[i] = (struct option){o->name, takes ? required_argument : no_argument, NULL,
+                                   FIRST_LONG + (int)i};
+        if (o->letter)
+            *letters++ = o->letter;
+        if (o->letter && takes)
+            *letters++ = ':';
+    }
+    *letters++ = 'h';
+    *letters = '\0';
+    longs[n] = (struct option){"help", no_argument, NULL, 'h'};
+    longs[n + 1] = (struct option){0};
+}
+
+static enum options_result parse_options(const struct option_table *table, int argc, char **argv,
+                                         void *values, bool *given) {
+    struct option longs[MOST_OPTIONS + 2];
+    char letters[2 * MOST_OPTIONS + 3];
+    describe(table, letters, longs);
+    opterr = 0;
+    optind = 0; // GNU and musl: start anew
+    for (int code; (code = getopt_long(argc, argv, letters, longs, NULL)) != -1;) {
+        const struct option_spec *o = spec_of(table, code == '?' || code == ':' ? optopt : code);
+        if (code == 'h' && !o)
+            return OPTIONS_HELP;
+        if (code == ':' && o) {
+            log_error("--%s: found nothing after it, expected %s", o->name, o->argument);
+            return OPTIONS_BAD;
+        }
+        if (code == '?' && o) {
+            log_error("--%s takes no value", o->name);
+            return OPTIONS_BAD;
+        }
+        if (!o) {
+            const char letter[] = {'-', (char)optopt, '\0'};
+            report_unknown(table, optopt ? letter : argv[optind - 1]);
+            return OPTIONS_BAD;
+        }
+        if (!parse_value(o, optarg, values))
+            return OPTIONS_BAD;
+        given[o - table->options] = true;
+    }
+    return OPTIONS_OK;
+}
+
+static bool parse_arguments(const struct option_table *table, int count, char **texts,
+                            void *values) {
+    const struct option_argument *a = table->arguments;
+    int i = 0;
+    for (; a && a->name; a++) {
+        void *value = (char *)values + a->offset;
+        if (i == count && !a->optional) {
+            log_error("%s is missing: %s (see --help)", a->name, a->help);
+            return false;
+        }
+        if (!a->repeated && i < count)
+            *(const char **)value = texts[i++];
+        while (a->repeated && i < count)
+            append(value, texts[i++]);
+    }
+    if (i < count) {
+        log_error("found '%s', expected no further argument (see --help)", texts[i]);
+        return false;
+    }
+    return true;
+}
+
+enum options_result options_parse(const struct option_table *table, int argc, char **argv,
+                                  void *values) {
+    bool given[MOST_OPTIONS] = {false};
+    for (size_t i = 0; i < option_count(table); i++)
+        if (table->options[i].def && !parse_value(&table->options[i], table->options[i].def, values))
+            return OPTIONS_BAD;
+    const enum options_result result = parse_options(table, argc, argv, values, given);
+    if (result != OPTIONS_OK)
+        return result;
+    if (!parse_arguments(table, argc - optind, argv + optind, values))
+        return OPTIONS_BAD;
+    for (size_t i = 0; i < option_count(table); i++) {
+        const struct option_spec *o = &table->options[i];
+        if (o->required && !given[i]) {
+            log_error("--%s %s is missing: %s (see --help)", o->name, o->argument, o->help);
+            return OPTIONS_BAD;
+        }
+    }
+    return OPTIONS_OK;
+}
+
+void options_finish(const struct option_table *table, void *values) {
+    for (size_t i = 0; i < option_count(table); i++)
+        if (table->options[i].type == OPTION_TEXTS)
+            mem_free(((struct option_list *)((char *)values + table->options[i].offset))->items);
+    for (const struct option_argument *a = table->arguments; a && a->name; a++)
+        if (a->repeated)
+            mem_free(((struct option_list *)((char *)values + a->offset))->items);
+}
