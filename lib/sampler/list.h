@@ -1,2 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samplers, one a line; each is sampler/NAME.c.
+X(independent)
+X(sobol)

@@ -28,6 +28,16 @@ struct sampler_type {
     bool independent; // points are independent: the running variance is a true error estimate
 };
 
+// Instance data of every sampler, and the parameters all of them take.
+struct sampler_settings {
+    int sample_count; // samples per pixel the file asks for; 0: none. Taken by the reader
+};
+
+#define SAMPLER_PARAMS                                                                             \
+    {"sample_count", PARAM_INT, offsetof(struct sampler_settings, sample_count), .def = "0",       \
+     .min = 0, .max = 1 << 30, .unit = "", .help = "samples per pixel, unless --spp is given"},   \
+    {"seed", PARAM_IGNORED, .unit = "", .help = "set by --seed"}
+
 #define X(name) extern const struct sampler_type sampler_##name;
 #include "sampler/list.h"
 #undef X

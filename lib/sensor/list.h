@@ -1,2 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sensors, one a line; each is sensor/NAME.c.
+X(orthographic)
+X(perspective)
+X(thinlens)

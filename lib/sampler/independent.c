@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Independent uniform numbers: SplitMix64 as a counter-based generator.
+#include "sampler/sampler.h"
+
+static const struct param params[] = {
+    SAMPLER_PARAMS,
+    PARAM_END,
+};
+
+static uint64_t next(struct sampler *s) {
+    const uint64_t start = hash_u64((uint64_t)s->seed << 32 | s->index);
+    return hash_u64(start + s->dimension++);
+}
+
+static float next_1d(struct sampler *s) {
+    return uniform_float((uint32_t)(next(s) >> 32));
+}
+
+static struct vec2 next_2d(struct sampler *s) {
+    const uint64_t bits = next(s);
+    return (struct vec2){uniform_float((uint32_t)(bits >> 32)), uniform_float((uint32_t)bits)};
+}
+
+const struct sampler_type sampler_independent = {
+    .entry = {.name = "independent", .help = "independent random numbers (plain Monte Carlo)",
+              .params = params, .size = sizeof(struct sampler_settings)},
+    .next_1d = next_1d, .next_2d = next_2d, .independent = true,
+};

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Owen-scrambled Sobol points: every 2-D draw is a (0,2)-sequence of its own, with its own order of
+// the points, so that any number of dimensions can be padded together (Burley 2020, Practical
+// Hash-based Owen Scrambling, JCGT 9(4)).
+//
+// A nested uniform (Owen) scramble flips each bit by a function of the bits above it. On reversed
+// bits this is a mixer in which information only moves upwards: multiplications by even numbers,
+// xor and addition (Laine and Karras 2011; constants by Vegdahl 2021, Building a Better LK Hash).
+// All words below are kept reversed where that saves a reversal.
+#include "sampler/sampler.h"
+
+static const struct param params[] = {
+    SAMPLER_PARAMS,
+    {"scramble", PARAM_IGNORED, .unit = "", .help = "always scrambled; set by --seed"},
+    {"dimension", PARAM_IGNORED, .unit = "", .help = "dimensions are not limited"},
+    PARAM_END,
+};
+
+static const char *const aliases[] = {"ldsampler", "halton", "hammersley", "orthogonal", NULL};
+
+// Each half on its own when x holds two words: the halves change places, too.
+static uint64_t reverse_bits(uint64_t x) {
+    x = __builtin_bswap64(x);
+    x = (x >> 4 & 0x0f0f0f0f0f0f0f0fu) | (x & 0x0f0f0f0f0f0f0f0fu) << 4;
+    x = (x >> 2 & 0x3333333333333333u) | (x & 0x3333333333333333u) << 2;
+    return (x >> 1 & 0x5555555555555555u) | (x & 0x5555555555555555u) << 1;
+}
+
+static uint32_t reverse_bits_u32(uint32_t x) {
+    return (uint32_t)(reverse_bits(x) >> 32);
+}
+
+// Owen scramble of a reversed word.
+static uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// The second Sobol dimension of point `index`, reversed. Its direction numbers are, reversed, the
+// powers of (1 + x) over GF(2), so bit i of index becomes (1 + x)^i: the polynomial index(x) is
+// shifted to index(1 + x), by halves of 16, 8, 4, 2 and 1 since (1 + x)^16 = 1 + x^16.
+static uint32_t second_dimension_reversed(uint32_t index) {
+    index ^= index >> 16;
+    index ^= (index & 0xff00ff00u) >> 8;
+    index ^= (index & 0xf0f0f0f0u) >> 4;
+    index ^= (index & 0xccccccccu) >> 2;
+    return index ^ (index & 0xaaaaaaaau) >> 1;
+}
+
+struct seeds {
+    uint32_t order, x, y;
+};
+
+static struct seeds next_seeds(struct sampler *s) {
+    const uint64_t a = hash_u64((uint64_t)s->seed << 32 | s->dimension++);
+    const uint64_t b = a * 0xd1342543de82ef95u; // its top bits depend on all of a
+    return (struct seeds){(uint32_t)a, (uint32_t)(a >> 32), (uint32_t)(b >> 32)};
+}
+
+// This dimension's order of the points: the index is scrambled as if it were a point.
+static uint32_t shuffled_index(const struct sampler *s, uint32_t seed) {
+    return reverse_bits_u32(scramble_reversed(reverse_bits_u32(s->index), seed));
+}
+
+static float next_1d(struct sampler *s) {
+    const struct seeds k = next_seeds(s);
+    const uint32_t index = shuffled_index(s, k.order);
+    return uniform_float(reverse_bits_u32(scramble_reversed(index, k.x)));
+}
+
+static struct vec2 next_2d(struct sampler *s) {
+    const struct seeds k = next_seeds(s);
+    const uint32_t index = shuffled_index(s, k.order);
+    // The first dimension is the reversed index, so its reversal is the index itself.
+    const uint32_t x = scramble_reversed(index, k.x);
+    const uint32_t y = scramble_reversed(second_dimension_reversed(index), k.y);
+    const uint64_t both = reverse_bits((uint64_t)x << 32 | y);
+    return (struct vec2){uniform_float((uint32_t)both), uniform_float((uint32_t)(both >> 32))};
+}
+
+const struct sampler_type sampler_sobol = {
+    .entry = {.name = "sobol", .help = "Owen-scrambled Sobol points (Burley 2020)",
+              .aliases = aliases, .params = params, .size = sizeof(struct sampler_settings)},
+    .next_1d = next_1d, .next_2d = next_2d,
+};
