@@ -69,13 +69,17 @@ bool mesh_transform(struct mesh *m, const struct transform *to_world) {
         for (int k = 0; k < 3; k++)
             p[k] = (float)out[k];
     }
-    for (uint32_t i = 0; m->normals && i < m->vertex_count; i++)
-        transform_unit_normal(&inverse, m->normals[i], 1);
     if (transform_determinant3(to_world) < 0)
         for (uint32_t i = 0; i < m->triangle_count; i++) {
             const uint32_t swap = m->indices[i][1];
             m->indices[i][1] = m->indices[i][2];
             m->indices[i][2] = swap;
         }
+    // angles, and with them weights, are those of the transformed mesh
+    if (m->normals_computed)
+        mesh_compute_normals(m);
+    else
+        for (uint32_t i = 0; m->normals && i < m->vertex_count; i++)
+            transform_unit_normal(&inverse, m->normals[i], 1);
     return true;
 }

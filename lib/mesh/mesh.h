@@ -13,8 +13,8 @@
 #include "base/registry.h"
 #include "math/transform.h"
 
-// Extra data a file gives per vertex or per face; looked up by the mesh_attribute texture under
-// "vertex_NAME" or "face_NAME".
+// Extra data a file gives per vertex or per face, as the mesh_attribute texture looks it up: the
+// name begins with "vertex_" or "face_".
 struct mesh_attribute {
     char name[48];
     int channels; // 1 to 3
@@ -26,6 +26,7 @@ struct mesh {
     uint32_t vertex_count, triangle_count;
     float (*positions)[3];   // object space as read; world space once a scene is built
     float (*normals)[3];     // per vertex, unit; NULL: none
+    bool normals_computed;   // the file gave none: mesh_transform computes them anew
     float (*uvs)[2];         // per vertex; NULL: none
     uint32_t (*indices)[3];
     struct mesh_attribute *attributes;
@@ -38,13 +39,15 @@ const struct mesh_attribute *mesh_find_attribute(const struct mesh *m, const cha
 // winding so that geometric normals stay on the same side as transformed normals. In double.
 // false (nothing changed): the transform is singular.
 bool mesh_transform(struct mesh *m, const struct transform *to_world);
-// Area-and-angle weighted vertex normals, for files that give none and shapes that ask.
+// Vertex normals as Mitsuba computes them: mean of the unit normals of the faces around a vertex,
+// weighted by their angle there (Thuermer and Wuethrich 1998, Computing Vertex Normals from
+// Polygonal Facets); (1, 0, 0) where all faces are degenerate. Replaces normals that exist.
 void mesh_compute_normals(struct mesh *m);
 
 struct mesh_options {
     int shape_index;      // which mesh of a file with several (serialized); else 0
     bool face_normals;    // drop vertex normals
-    bool flip_uvs;        // v -> 1 - v
+    bool flip_uvs;        // v -> 1 - v; what a format is used to: mesh_reader_type.flip_uvs
     const char *shape_name; // OBJ: only this group/object; NULL: all
     int threads;          // 0: default
 };
@@ -55,6 +58,7 @@ struct mesh_options {
 struct mesh_reader_type {
     struct entry entry;             // name: as Mitsuba's shape plugin; params unused
     const char *const *extensions;  // lower case, NULL-terminated
+    bool flip_uvs;                  // Mitsuba's default of flip_tex_coords for this format
     bool (*read)(const char *path, const struct mesh_options *options, struct mesh *m);
 };
 
