@@ -2,54 +2,78 @@
 // Pictures in memory and on disk.
 //
 // Pixels are float, interleaved: pixels[(y * width + x) * channels + c], y downwards. Channel names
-// follow EXR: "R", "albedo.G", "Z". Attributes are strings or numbers that travel in EXR headers.
+// follow EXR: "R", "albedo.G", "Z"; a reader puts R G B A of a layer into that order. Attributes
+// are strings or numbers that travel in EXR headers; names that begin with "file." describe the
+// file an image was read from and are not written.
 #pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
+enum { IMAGE_NAME_SIZE = 64 }; // of channel and attribute names, with the terminating zero
+
 struct image_attribute {
-    char name[64];
-    char *text;    // NULL: the number
+    char name[IMAGE_NAME_SIZE];
+    char *text;    // owned; NULL: the number
     double number;
 };
 
 struct image {
     int width, height, channels;
     float *pixels;               // owned
-    char (*channel_names)[64];   // owned
+    char (*channel_names)[IMAGE_NAME_SIZE]; // owned
     struct image_attribute *attributes; // owned
     int attribute_count;
     bool srgb_encoded; // 8-bit file in a display encoding: linearise before use as a colour
     int bits;          // per channel in the file: 8, 16, 32
+    // The picture that this one is a crop of: its size and where the crop begins in it (EXR display
+    // and data window). full_width == 0: not a crop.
+    int full_width, full_height, crop_x, crop_y;
 };
 
-bool image_init(struct image *im, int width, int height, int channels); // names R G B A / Y
+// All zero pixels; channel names Y, YA, RGB, RGBA or channel0, channel1, ... false after an error
+// message: a size below 1 or beyond 2^40 values.
+bool image_init(struct image *im, int width, int height, int channels);
 void image_finish(struct image *im);
 void image_set_text(struct image *im, const char *name, const char *text);
 void image_set_number(struct image *im, const char *name, double number);
 const struct image_attribute *image_find_attribute(const struct image *im, const char *name);
 int image_find_channel(const struct image *im, const char *name); // -1: none
 
-// Reads any format: EXR through OpenEXRCore here, everything else through OpenImageIO in a child
-// process with limits on memory and time. false after one error message.
+// Reads any format: EXR through OpenEXRCore, everything else through OpenImageIO, both in a child
+// process with limits on memory and time (decode.h). false after one error message; *im is then
+// empty. EXR: the first part, level 0, uint and half converted to float; deep data and subsampled
+// channels are refused.
 bool image_read(const char *path, struct image *im);
 
 struct image_exr_options {
     bool half;                // 16-bit channels; values beyond its range become infinite
-    uint64_t *half_overflows; // counts them; may be NULL
+    uint64_t *half_overflows; // is set to their number; may be NULL
+    int threads;              // 0: default
 };
 
-// Atomic (base/file.h). ZIP compression.
+// Atomic (base/file.h). ZIP compression. Channel names must differ. options may be NULL.
 bool image_write_exr(const char *path, const struct image *im,
                      const struct image_exr_options *options);
-// 8-bit sRGB PNG from linear RGB in channels 0-2 (1 channel: grey); values are clipped to [0,1].
+// 8-bit sRGB PNG from linear RGB in channels 0-2 (1 or 2 channels: grey); values are clipped to
+// [0,1], NaN becomes 0. Atomic.
 bool image_write_png(const char *path, const struct image *im);
 
-// The linear Rec.709 picture (3 channels) of an image: channels R G B, or Y, or the first ones;
-// srgb_encoded ones are linearised. false: no such channels (message).
+// The linear Rec.709 picture (3 channels) of an image: its channels R G B, or Y, or the first ones;
+// srgb_encoded ones are linearised. false: out of range sizes only.
 bool image_to_rgb(const struct image *im, struct image *rgb);
+// The same of one layer ("albedo": albedo.R, ...; "Z": that channel; "": the unnamed one). X Y Z of
+// a layer are taken as they are. false after an error message that names `path`: no such layer.
+bool image_layer_to_rgb(const struct image *im, const char *layer, const char *path,
+                        struct image *rgb);
+// Means of factor x factor boxes; the last ones are smaller where factor does not divide the size.
+bool image_downsample(const struct image *im, int factor, struct image *out);
+
+// Luminance of linear Rec.709.
+static inline float rgb_luminance(const float *rgb) {
+    return 0.212671f * rgb[0] + 0.715160f * rgb[1] + 0.072169f * rgb[2];
+}
 
 static inline float srgb_to_linear(float v) {
     return v <= 0.04045f ? v / 12.92f : __builtin_powf((v + 0.055f) / 1.055f, 2.4f);

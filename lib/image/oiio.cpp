@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only C++ file: OpenImageIO has no C interface.
+#include <OpenImageIO/imageio.h>
+
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <string>
+
+extern "C" {
+#include "image/decode.h"
+}
+#include "image/oiio.h"
+
+// 8-bit pictures and 16-bit PNG are in a display encoding unless the file itself says linear.
+static bool is_srgb(const OIIO::ImageSpec &spec, const std::string &format) {
+    const bool small = spec.format == OIIO::TypeDesc::UINT8;
+    const bool wide_png = spec.format == OIIO::TypeDesc::UINT16 && format == "png";
+    const bool linear = spec.get_string_attribute("oiio:ColorSpace") == "Linear";
+    return (small || wide_png) && !linear;
+}
+
+static bool decode(struct decoder_input *in, struct image *im) {
+    // The child has no threads but this one; libraries must not wait for others.
+    OIIO::attribute("threads", 1);
+    OIIO::ImageSpec config;
+    config["oiio:UnassociatedAlpha"] = 1; // colour stays as it stands in the file
+    auto input = OIIO::ImageInput::open(in->path, &config);
+    if (!input)
+        return decoder_fail(in, "%s", OIIO::geterror().c_str());
+    const OIIO::ImageSpec &spec = input->spec();
+    if (spec.deep || spec.depth > 1)
+        return decoder_fail(in, "is a deep or volume picture; expected a flat one");
+    if (!decoder_init_image(in, im, spec.width, spec.height, spec.nchannels))
+        return false;
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, im->pixels)) {
+        const std::string why = input->geterror();
+        return decoder_fail(in, "%s", why.empty() ? "it is damaged" : why.c_str());
+    }
+    for (int c = 0; c < im->channels && c < (int)spec.channelnames.size(); c++)
+        std::snprintf(im->channel_names[c], IMAGE_NAME_SIZE, "%s", spec.channelnames[c].c_str());
+    im->srgb_encoded = is_srgb(spec, input->format_name());
+    im->bits = (int)spec.format.size() * 8;
+    image_set_text(im, "file.format", input->format_name());
+    return true;
+}
+
+extern "C" bool oiio_decode(struct decoder_input *in, struct image *im) {
+    try {
+        return decode(in, im);
+    } catch (const std::exception &e) {
+        return decoder_fail(in, "%s", e.what());
+    }
+}
+
+static bool write_png(const char *path, const unsigned char *bytes, int width, int height,
+                      int channels, std::string &why) {
+    OIIO::attribute("threads", 1);
+    auto output = OIIO::ImageOutput::create("png");
+    if (!output) {
+        why = OIIO::geterror();
+        return false;
+    }
+    OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
+    spec["oiio:ColorSpace"] = "sRGB";
+    const bool good = output->open(path, spec) &&
+                      output->write_image(OIIO::TypeDesc::UINT8, bytes) && output->close();
+    if (!good)
+        why = output->geterror();
+    return good;
+}
+
+extern "C" bool oiio_write_png(const char *path, const unsigned char *bytes, int width, int height,
+                               int channels, char *message, size_t n) {
+    std::string why;
+    bool good = false;
+    try {
+        good = write_png(path, bytes, width, height, channels, why);
+    } catch (const std::exception &e) {
+        why = e.what();
+    }
+    std::snprintf(message, n, "%s", why.c_str());
+    return good;
+}

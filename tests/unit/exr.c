@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// EXR files come back as they were written: bits, names, attributes, windows.
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "image/image.h"
+#include "math/hash.h"
+
+static const char *const path = "exr_test.exr";
+
+// Every kind of float: random bits, among them NaN, infinities and subnormals.
+static void fill_random(struct image *im) {
+    const size_t n = (size_t)im->width * im->height * im->channels;
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t bits = (uint32_t)hash_u64(i);
+        memcpy(&im->pixels[i], &bits, sizeof bits);
+    }
+    const float special[] = {NAN, INFINITY, -INFINITY, 0.0f, -0.0f, 1e-45f, 3.4e38f};
+    for (size_t i = 0; i < sizeof special / sizeof *special && i < n; i++)
+        im->pixels[i] = special[i];
+}
+
+// Values of different bits, channels matched by name; all of them if sizes or names differ.
+static size_t differing_bits(const struct image *a, const struct image *b) {
+    const size_t n = (size_t)a->width * a->height;
+    if (a->width != b->width || a->height != b->height || a->channels != b->channels)
+        return n * a->channels;
+    size_t count = 0;
+    for (int c = 0; c < a->channels; c++) {
+        const int d = image_find_channel(b, a->channel_names[c]);
+        for (size_t p = 0; p < n; p++)
+            count += d < 0 || memcmp(&a->pixels[p * a->channels + c],
+                                     &b->pixels[p * a->channels + d], sizeof(float)) != 0;
+    }
+    return count;
+}
+
+static void float_round_trip_is_bit_exact(int width, int height, int channels, int threads) {
+    struct image im, back;
+    CHECK(image_init(&im, width, height, channels));
+    fill_random(&im);
+    CHECK(image_write_exr(path, &im, &(struct image_exr_options){.threads = threads}));
+    CHECK(image_read(path, &back));
+    CHECK(back.bits == 32 && !back.srgb_encoded && back.full_width == 0);
+    CHECK(differing_bits(&im, &back) == 0);
+    image_finish(&im);
+    image_finish(&back);
+}
+
+static void many_layers_keep_their_names(void) {
+    struct image im, back;
+    CHECK(image_init(&im, 33, 47, 200));
+    fill_random(&im);
+    for (int c = 0; c < im.channels; c++)
+        snprintf(im.channel_names[c], IMAGE_NAME_SIZE, "%055d.%s", 7 * c % 200,
+                 c % 3 == 0 ? "R" : c % 3 == 1 ? "luminan" : "Z");
+    CHECK(strlen(im.channel_names[1]) == IMAGE_NAME_SIZE - 1);
+    CHECK(image_write_exr(path, &im, NULL) && image_read(path, &back));
+    CHECK(differing_bits(&im, &back) == 0);
+    image_finish(&im);
+    image_finish(&back);
+}
+
+static void colours_come_before_other_channels(void) {
+    static const char *const names[] = {"Z", "albedo.B", "A", "albedo.G", "R", "B", "albedo.R", "G"};
+    static const char *const sorted[] = {"R", "G", "B", "A", "Z", "albedo.R", "albedo.G",
+                                         "albedo.B"};
+    struct image im, back;
+    CHECK(image_init(&im, 2, 1, 8));
+    for (int c = 0; c < 8; c++) {
+        snprintf(im.channel_names[c], IMAGE_NAME_SIZE, "%s", names[c]);
+        im.pixels[c] = (float)names[c][strlen(names[c]) - 1];
+    }
+    CHECK(image_write_exr(path, &im, NULL) && image_read(path, &back));
+    for (int c = 0; c < 8; c++) {
+        CHECK(strcmp(back.channel_names[c], sorted[c]) == 0);
+        CHECK(back.pixels[c] == (float)sorted[c][strlen(sorted[c]) - 1]);
+    }
+    struct image rgb;
+    CHECK(image_layer_to_rgb(&back, "albedo", path, &rgb));
+    CHECK(rgb.pixels[0] == 'R' && rgb.pixels[1] == 'G' && rgb.pixels[2] == 'B');
+    image_finish(&rgb);
+    CHECK(image_layer_to_rgb(&back, "Z", path, &rgb) && rgb.pixels[1] == 'Z');
+    image_finish(&rgb);
+    CHECK(!image_layer_to_rgb(&back, "nothing", path, &rgb));
+    image_finish(&im);
+    image_finish(&back);
+}
+
+static void attributes_and_windows_return(void) {
+    struct image im, back;
+    CHECK(image_init(&im, 5, 4, 3));
+    image_set_text(&im, "command", "relume render 'a b.xml' -o out.exr");
+    image_set_text(&im, "empty", "");
+    image_set_number(&im, "seconds", 12.000000001);
+    image_set_number(&im, "seconds", 0.1);
+    image_set_text(&im, "a_name_that_is_longer_than_thirty_one_characters",
+                   "long");
+    image_set_text(&im, "file.format", "must not be written");
+    im.full_width = 20;
+    im.full_height = 10;
+    im.crop_x = 3;
+    im.crop_y = 2;
+    CHECK(image_write_exr(path, &im, NULL) && image_read(path, &back));
+    const struct image_attribute *a = image_find_attribute(&back, "command");
+    CHECK(a && a->text && strcmp(a->text, "relume render 'a b.xml' -o out.exr") == 0);
+    a = image_find_attribute(&back, "seconds");
+    CHECK(a && !a->text && a->number == 0.1);
+    a = image_find_attribute(&back, "empty");
+    CHECK(a && a->text && !a->text[0]);
+    CHECK(image_find_attribute(
+        &back, "a_name_that_is_longer_than_thirty_one_characters"));
+    CHECK(!image_find_attribute(&back, "file.format"));
+    CHECK(image_find_attribute(&back, "file.part 1"));
+    CHECK(back.full_width == 20 && back.full_height == 10 && back.crop_x == 3 && back.crop_y == 2);
+    image_finish(&im);
+    image_finish(&back);
+}
+
+static void half_rounds_and_counts_overflow(void) {
+    struct image im, back;
+    uint64_t overflows = 99;
+    const float in[] = {1, 65504, 65519.9f, 65520, -1e30f, INFINITY, 1 + 0x1p-11f, 0x1p-24f, NAN};
+    const float out[] = {1,         65504,    65504, INFINITY, -INFINITY,
+                         INFINITY, 1,        0x1p-24f};
+    CHECK(image_init(&im, 9, 1, 1));
+    memcpy(im.pixels, in, sizeof in);
+    CHECK(image_write_exr(path, &im,
+                          &(struct image_exr_options){.half = true, .half_overflows = &overflows}));
+    CHECK(overflows == 2);
+    CHECK(image_read(path, &back) && back.bits == 16);
+    for (int i = 0; i < 8; i++)
+        CHECK(back.pixels[i] == out[i]);
+    CHECK(isnan(back.pixels[8]));
+    image_finish(&im);
+    image_finish(&back);
+}
+
+static void refusals_leave_the_old_file(void) {
+    struct image im, back;
+    CHECK(image_init(&im, 3, 3, 2));
+    CHECK(image_write_exr(path, &im, NULL));
+    strcpy(im.channel_names[1], im.channel_names[0]);
+    CHECK(!image_write_exr(path, &im, NULL));
+    CHECK(!image_write_exr("no/such/folder/a.exr", &im, NULL));
+    CHECK(image_read(path, &back) && back.channels == 2);
+    CHECK(!image_read("no_such_file.exr", &back) && !back.pixels);
+    CHECK(file_write("not.exr", "hello", 5) && !image_read("not.exr", &back));
+    unlink("not.exr");
+    image_finish(&im);
+}
+
+// A file cut anywhere is refused: never read as a picture with holes.
+static void truncated_files_are_refused(void) {
+    struct image im, back;
+    size_t size = 0;
+    CHECK(image_init(&im, 64, 64, 3));
+    fill_random(&im);
+    CHECK(image_write_exr(path, &im, NULL));
+    char *data = file_read(path, 0, &size);
+    CHECK(data != NULL);
+    for (size_t n = 0; n < size; n += size / 15) {
+        CHECK(file_write("cut.exr", data, n));
+        CHECK(!image_read("cut.exr", &back));
+    }
+    unlink("cut.exr");
+    free(data);
+    image_finish(&im);
+}
+
+int main(void) {
+    float_round_trip_is_bit_exact(1, 1, 1, 1);
+    float_round_trip_is_bit_exact(1, 1, 4, 2);
+    float_round_trip_is_bit_exact(17, 1, 3, 1);
+    float_round_trip_is_bit_exact(1, 97, 2, 3);
+    float_round_trip_is_bit_exact(123, 777, 3, 4);
+    float_round_trip_is_bit_exact(640, 1025, 4, 8);
+    many_layers_keep_their_names();
+    colours_come_before_other_channels();
+    attributes_and_windows_return();
+    half_rounds_and_counts_overflow();
+    refusals_leave_the_old_file();
+    truncated_files_are_refused();
+    unlink(path);
+    return check_result();
+}
