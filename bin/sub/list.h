@@ -1,2 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subcommands, in the order in which --help lists them: one X(name) line each.
+X(render)
+X(tonemap)
+X(info)

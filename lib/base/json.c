@@ -119,6 +119,89 @@ void json_print(const struct json *root, bool indented) {
     fflush(stdout); // a reader of a long run wants each line when it is there
 }
 
+static bool is_plain(const json_t *v) {
+    return json_typeof(v) != JSON_OBJECT && json_typeof(v) != JSON_ARRAY;
+}
+
+static void print_plain(const json_t *v) {
+    switch (json_typeof(v)) {
+    case JSON_STRING: printf("%s", json_string_value(v)); break;
+    case JSON_INTEGER: printf("%lld", (long long)json_integer_value(v)); break;
+    case JSON_REAL: printf("%.9g", json_real_value(v)); break;
+    case JSON_TRUE: printf("yes"); break;
+    case JSON_FALSE: printf("no"); break;
+    default: printf("none"); break;
+    }
+}
+
+static void print_members(const json_t *object, int indent);
+
+static void print_items(const json_t *array, int indent) {
+    for (size_t i = 0; i < json_array_size(array); i++) {
+        const json_t *item = json_array_get(array, i);
+        if (is_plain(item)) {
+            putchar(' ');
+            print_plain(item);
+        } else {
+            putchar('\n');
+            print_members(item, indent);
+        }
+    }
+}
+
+static bool is_row(const json_t *object) {
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)object, key, value) {
+        if (!is_plain(value))
+            return false;
+    }
+    return true;
+}
+
+// An object of plain values inside an array is one line.
+static void print_row(const json_t *object, int indent) {
+    const char *key;
+    json_t *value;
+    printf("%*s", indent, "");
+    json_object_foreach((json_t *)object, key, value) {
+        printf("%s ", key);
+        print_plain(value);
+        printf("  ");
+    }
+}
+
+static void print_members(const json_t *object, int indent) {
+    const char *key;
+    json_t *value;
+    if (indent > 0 && is_row(object)) {
+        print_row(object, indent);
+        return;
+    }
+    json_object_foreach((json_t *)object, key, value) {
+        printf("%*s%s:", indent, "", key);
+        if (json_typeof(value) == JSON_ARRAY) {
+            print_items(value, indent + 2);
+        } else if (json_typeof(value) == JSON_OBJECT) {
+            const char *name;
+            json_t *member;
+            json_object_foreach(value, name, member) {
+                printf("\n%*s%s: ", indent + 2, "", name);
+                if (is_plain(member))
+                    print_plain(member);
+            }
+        } else {
+            putchar(' ');
+            print_plain(value);
+        }
+        putchar('\n');
+    }
+}
+
+void json_print_lines(const struct json *root) {
+    print_members(see(root), 0);
+}
+
 bool json_write(const struct json *root, const char *path) {
     char *text = json_dumps(see(root), JSON_REAL_PRECISION(15) | JSON_INDENT(2));
     if (!text) {

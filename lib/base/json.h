@@ -28,6 +28,9 @@ struct json *json_append_array(struct json *array);
 
 // One line on standard output, or several indented ones.
 void json_print(const struct json *root, bool indented);
+// The same for people: a line "key: value" each, nested ones indented; arrays of plain values on
+// one line.
+void json_print_lines(const struct json *root);
 // Atomic; false after an error message.
 bool json_write(const struct json *root, const char *path);
 

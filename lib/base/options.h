@@ -59,15 +59,15 @@ struct option_table {
 #define OPTION_END {.name = NULL}
 
 // The three that every subcommand which computes something has.
-#define OPTION_THREADS(type, member)                                                               \
-    {.name = "threads", .type = OPTION_INT, .offset = offsetof(type, member), .argument = "N",     \
+#define OPTION_THREADS(values, member)                                                             \
+    {.name = "threads", .type = OPTION_INT, .offset = offsetof(values, member), .argument = "N",   \
      .help = "number of threads; 0: all processors. Results do not depend on it", .def = "0",      \
      .min = 0, .max = 4096}
-#define OPTION_QUIET(type, member)                                                                 \
-    {.name = "quiet", .letter = 'q', .type = OPTION_FLAG, .offset = offsetof(type, member),        \
+#define OPTION_QUIET(values, member)                                                               \
+    {.name = "quiet", .letter = 'q', .type = OPTION_FLAG, .offset = offsetof(values, member),      \
      .help = "print errors and warnings only"}
-#define OPTION_JSON(type, member)                                                                  \
-    {.name = "json", .type = OPTION_FLAG, .offset = offsetof(type, member),                        \
+#define OPTION_JSON(values, member)                                                                \
+    {.name = "json", .type = OPTION_FLAG, .offset = offsetof(values, member),                      \
      .help = "print results as JSON on standard output"}
 
 enum options_result { OPTIONS_OK, OPTIONS_HELP, OPTIONS_BAD };

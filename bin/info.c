@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each kind of file has a function that reads the file in full and tells its content as a JSON
+// object; without --json the same object is printed as lines.
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/log.h"
+#include "image/summary.h"
+#include "mesh/mesh.h"
+#include "subcommand.h"
+
+struct info_options {
+    const char *file;
+    bool json;
+};
+
+static void tell_channel(const struct image *im, int c, struct json *out) {
+    struct channel_summary s;
+    image_summarize_channel(im, c, &s);
+    json_add_text(out, "name", im->channel_names[c]);
+    json_add_number(out, "mean", s.mean);
+    json_add_number(out, "min", (double)s.smallest);
+    json_add_number(out, "max", (double)s.largest);
+    json_add_count(out, "nan", (int64_t)s.nans);
+    json_add_count(out, "inf", (int64_t)s.infinities);
+    json_add_count(out, "negative", (int64_t)s.negatives);
+}
+
+static bool tell_image(const char *path, struct json *out) {
+    struct image im;
+    if (!image_read(path, &im))
+        return false;
+    json_add_text(out, "kind", "image");
+    json_add_count(out, "width", im.width);
+    json_add_count(out, "height", im.height);
+    json_add_count(out, "bits", im.bits);
+    json_add_text(out, "encoding", im.srgb_encoded ? "sRGB" : "linear");
+    if (im.full_width) {
+        const int crop[] = {im.crop_x, im.crop_y, im.full_width, im.full_height};
+        struct json *window = json_add_array(out, "crop_x_y_of_width_height");
+        for (int i = 0; i < 4; i++)
+            json_append_number(window, crop[i]);
+    }
+    struct json *attributes = json_add_object(out, "attributes");
+    for (int i = 0; i < im.attribute_count; i++)
+        if (im.attributes[i].text)
+            json_add_text(attributes, im.attributes[i].name, im.attributes[i].text);
+        else
+            json_add_number(attributes, im.attributes[i].name, im.attributes[i].number);
+    struct json *channels = json_add_array(out, "channels");
+    for (int c = 0; c < im.channels; c++)
+        tell_channel(&im, c, json_append_object(channels));
+    image_finish(&im);
+    return true;
+}
+
+static void tell_bounds(const struct mesh *m, struct json *out) {
+    struct json *corners[2] = {json_add_array(out, "min"), json_add_array(out, "max")};
+    for (int axis = 0; axis < 3; axis++) {
+        float low = m->vertex_count ? m->positions[0][axis] : 0, high = low;
+        for (uint32_t v = 1; v < m->vertex_count; v++) {
+            low = m->positions[v][axis] < low ? m->positions[v][axis] : low;
+            high = m->positions[v][axis] > high ? m->positions[v][axis] : high;
+        }
+        json_append_number(corners[0], (double)low);
+        json_append_number(corners[1], (double)high);
+    }
+}
+
+static bool tell_mesh(const char *path, struct json *out) {
+    const struct mesh_reader_type *reader = mesh_reader_for(path);
+    struct mesh m = {0};
+    const struct mesh_options options = {0};
+    if (!reader || !reader->read(path, &options, &m))
+        return false;
+    json_add_text(out, "kind", "mesh");
+    json_add_count(out, "vertices", m.vertex_count);
+    json_add_count(out, "triangles", m.triangle_count);
+    json_add_bool(out, "normals", m.normals != NULL);
+    json_add_bool(out, "uvs", m.uvs != NULL);
+    struct json *attributes = json_add_array(out, "attributes");
+    for (uint32_t i = 0; i < m.attribute_count; i++)
+        json_append_text(attributes, m.attributes[i].name);
+    tell_bounds(&m, out);
+    mesh_finish(&m);
+    return true;
+}
+
+static bool is_mesh(const char *extension) {
+    for (const struct entry *const *e = mesh_readers.entries; *e; e++)
+        for (const char *const *x = ((const struct mesh_reader_type *)*e)->extensions; *x; x++)
+            if (strcmp(*x, extension) == 0)
+                return true;
+    return false;
+}
+
+static int run(const void *values, const char *command) {
+    const struct info_options *o = values;
+    char extension[16];
+    (void)command;
+    file_extension(o->file, extension, sizeof extension);
+    struct json *out = json_new_object();
+    json_add_text(out, "file", o->file);
+    const bool good = is_mesh(extension) ? tell_mesh(o->file, out) : tell_image(o->file, out);
+    if (good && o->json)
+        json_print(out, true);
+    else if (good)
+        json_print_lines(out);
+    json_destroy(out);
+    return good ? EXIT_DONE : EXIT_FAILED;
+}
+
+static const struct option_spec options[] = {
+    OPTION_JSON(struct info_options, json),
+    OPTION_END,
+};
+
+static const struct option_argument arguments[] = {
+    {.name = "FILE", .offset = offsetof(struct info_options, file),
+     .help = "a picture (EXR, PNG, HDR, JPEG, ...) or a mesh (OBJ, PLY, ...)"},
+    {.name = NULL},
+};
+
+const struct subcommand subcommand_info = {
+    .entry = {.name = "info", .help = "read a file in full and say what it holds",
+              .size = sizeof(struct info_options)},
+    .options = {.options = options,
+                .arguments = arguments,
+                .examples = "  relume info room.exr\n  relume info bunny.ply --json\n"},
+    .run = run,
+};
