@@ -67,3 +67,16 @@ extern const struct registry lights;
 static inline const struct light_type *light_type_of(const struct object *o) {
     return (const struct light_type *)o->type;
 }
+
+// ---- for the lights themselves ----------------------------------------------------------------
+
+// Parameters that all lights take.
+#define LIGHT_PARAMS                                                                               \
+    {"sampling_weight", PARAM_IGNORED, .unit = "", .help = "lights are chosen by their power"}
+
+// Power of radiance (mean over all directions) that enters a sphere of that radius.
+float light_power_infinite(float mean_radiance, float radius);
+// A point given in the light's space, in recentred world space.
+vec3 light_position(const struct transform *to_world, vec3 local, const struct light_scene *scene);
+// Fills s for a delta light at `position` that sends `intensity` towards p. false: at p itself.
+bool light_sample_point(vec3 position, vec3 p, spectrum intensity, struct light_sample *s);

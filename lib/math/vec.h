@@ -49,14 +49,16 @@ static inline float length(vec3 a) {
     return sqrtf(dot(a, a));
 }
 
-// Zero stays zero; lengths down to the smallest normal float are safe.
+// Zero stays zero; any other finite length is safe. Extreme ones are first scaled by a power of two,
+// so that scenes that differ by such a factor give the same bits.
 static inline vec3 normalize(vec3 a) {
     float l2 = dot(a, a);
     if (__builtin_expect(!(l2 > 1e-30f && l2 < 1e30f), 0)) {
         const float m = fmaxf(fabsf(a[0]), fmaxf(fabsf(a[1]), fabsf(a[2])));
         if (!(m > 0) || !(m < INFINITY))
             return (vec3){0};
-        a /= m;
+        const int e = ilogbf(m);
+        a = v3(ldexpf(a[0], -e), ldexpf(a[1], -e), ldexpf(a[2], -e));
         l2 = dot(a, a);
     }
     return a * (1 / sqrtf(l2));

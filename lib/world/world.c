@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/world.h"
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "base/thread.h"
+
+static bool prepare_textures(struct scene *s) {
+    for (uint32_t i = 0; i < s->texture_count; i++) {
+        const struct texture_type *type = texture_type_of(s->textures[i]);
+        if (type->prepare && !type->prepare(s->textures[i], &s->arena))
+            return false;
+    }
+    return true;
+}
+
+static bool prepare_bsdfs(struct world *w, struct scene *s) {
+    for (uint32_t i = 0; i < s->bsdf_count; i++) {
+        struct object *o = s->bsdfs[i];
+        const struct bsdf_type *type = bsdf_type_of(o);
+        if (type->prepare && !type->prepare(o, &s->arena))
+            return false;
+        w->shadow_rays_may_pass |= (type->lobes(o->data) & LOBE_NULL) != 0;
+    }
+    return true;
+}
+
+// Half of the choice is uniform: power alone can starve a weak light that stands near.
+static void init_choice(struct world *w) {
+    float *weights = mem_array(w->light_count, sizeof *weights);
+    double total = 0;
+    for (uint32_t i = 0; i < w->light_count; i++) {
+        const float power = w->lights[i].type->power(w->lights[i].data);
+        weights[i] = power > 0 ? fminf(power, 1e30f) : 0;
+        total += (double)weights[i];
+    }
+    const double uniform = total > 0 ? total / w->light_count : 1;
+    for (uint32_t i = 0; i < w->light_count; i++)
+        weights[i] = (float)(((double)weights[i] + uniform) / (total > 0 ? 2 * total : 1));
+    alias_init(&w->choice, weights, w->light_count);
+    for (uint32_t i = 0; i < w->light_count; i++)
+        w->lights[i].pmf = w->choice.entries[i].pmf;
+    mem_free(weights);
+}
+
+static bool prepare_lights(struct world *w, struct scene *s) {
+    w->light_count = s->light_count;
+    w->lights = mem_array(s->light_count, sizeof *w->lights);
+    w->infinite = mem_array(s->light_count, sizeof *w->infinite);
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        struct scene_light *l = &s->lights[i];
+        const struct light_type *type = light_type_of(l->object);
+        const struct light_scene info = {
+            .centre = w->centre, .radius = w->radius, .origin = {s->centre[0], s->centre[1], s->centre[2]},
+            .shape = l->shape == SCENE_NONE ? NULL : &s->shapes[l->shape]};
+        if (info.shape && info.shape->group != SCENE_NONE) {
+            log_error_at(l->object->at, "a shape inside a shapegroup cannot emit light");
+            return false;
+        }
+        if (type->prepare && !type->prepare(l->object, &info, &s->arena))
+            return false;
+        w->lights[i] = (struct world_light){type, l->object->data, 1};
+        if (type->infinite && !type->delta)
+            w->infinite[w->infinite_count++] = i;
+    }
+    if (w->light_count > 1)
+        init_choice(w);
+    return true;
+}
+
+static bool init_transform(struct world_transform *t, const struct transform *to_world,
+                           struct where at) {
+    t->to_world = *to_world;
+    if (!transform_invert(to_world, &t->to_object)) {
+        log_error_at(at, "the to_world transform is singular");
+        return false;
+    }
+    t->forward = affine_from(&t->to_world);
+    t->inverse = affine_from(&t->to_object);
+    return true;
+}
+
+static bool init_transforms(struct world *w, const struct scene *s) {
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        if (s->shapes[i].kind == SHAPE_MESH)
+            continue;
+        if (!w->quadrics)
+            w->quadrics = mem_array(s->shape_count, sizeof *w->quadrics);
+        if (!init_transform(&w->quadrics[i], &s->shapes[i].to_world, s->shapes[i].at))
+            return false;
+    }
+    w->instances = mem_array(s->instance_count, sizeof *w->instances);
+    for (uint32_t i = 0; i < s->instance_count; i++)
+        if (!init_transform(&w->instances[i], &s->instances[i].to_world,
+                            (struct where){s->path, 0}))
+            return false;
+    return true;
+}
+
+struct world *world_create(struct scene *s, int threads) {
+    struct world *w = mem_array(1, sizeof *w);
+    w->scene = s;
+    w->centre = 0.5f * (s->bounds_min + s->bounds_max);
+    w->radius = length(s->bounds_max - w->centre);
+    if (!(w->radius > 0))
+        w->radius = 1; // nothing, or a single point: any positive size will do
+    if (!init_transforms(w, s) || !prepare_textures(s) || !prepare_bsdfs(w, s) || !prepare_lights(w, s))
+        goto fail;
+    const double start = time_seconds();
+    w->accel = accel_create(s, threads);
+    w->accel_seconds = time_seconds() - start;
+    if (w->accel)
+        return w;
+fail:
+    world_destroy(w);
+    return NULL;
+}
+
+void world_destroy(struct world *w) {
+    if (!w)
+        return;
+    const struct scene *s = w->scene;
+    for (uint32_t i = 0; i < s->texture_count; i++)
+        if (texture_type_of(s->textures[i])->finish)
+            texture_type_of(s->textures[i])->finish(s->textures[i]->data);
+    for (uint32_t i = 0; i < s->light_count; i++)
+        if (light_type_of(s->lights[i].object)->finish)
+            light_type_of(s->lights[i].object)->finish(s->lights[i].object->data);
+    accel_destroy(w->accel);
+    alias_finish(&w->choice);
+    mem_free(w->quadrics);
+    mem_free(w->instances);
+    mem_free(w->lights);
+    mem_free(w->infinite);
+    mem_free(w);
+}
+
+struct ray world_shadow_ray(const struct surface *s, const struct light_sample *l) {
+    const vec3 o = surface_offset(s, l->wi);
+    if (!(l->distance < INFINITY))
+        return (struct ray){o, l->wi, 0, INFINITY};
+    const vec3 target = length2(l->n) > 0 ? offset_point(l->p, l->p_error, l->n, -l->wi) : l->p;
+    return (struct ray){o, target - o, 0, 1};
+}
+
+spectrum world_transmittance(const struct world *w, struct ray ray,
+                             struct wavelengths wavelengths) {
+    enum { MOST_SURFACES = 256 }; // more than that straight through counts as opaque
+    if (!w->shadow_rays_may_pass)
+        return spectrum_grey(accel_occluded(w->accel, &ray) ? 0 : 1);
+    spectrum through = spectrum_grey(1);
+    for (int i = 0; i < MOST_SURFACES; i++) {
+        struct accel_hit hit;
+        struct surface s;
+        if (!accel_intersect(w->accel, &ray, &hit))
+            return through;
+        world_surface(w, &ray, &hit, &s);
+        s.point.wavelengths = wavelengths;
+        const struct object *bsdf = s.shape->bsdf;
+        const struct bsdf_type *type = bsdf_type_of(bsdf);
+        if (!type->null_transmittance)
+            return spectrum_grey(0);
+        const vec3 wo = to_local(&s.point.frame, -normalize(ray.d));
+        through *= type->null_transmittance(bsdf->data, &s.point, wo);
+        if (spectrum_is_black(through))
+            return through;
+        const vec3 end = ray.o + ray.tmax * ray.d;
+        ray.o = surface_offset(&s, ray.d);
+        if (ray.tmax < INFINITY)
+            ray.d = end - ray.o;
+    }
+    return spectrum_grey(0);
+}

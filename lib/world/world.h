@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The world: a scene made ready for tracing. Constant while rendering.
+#pragma once
+
+#include "accel/accel.h"
+#include "bsdf/bsdf.h"
+#include "light/light.h"
+#include "math/distribution.h"
+#include "scene/scene.h"
+
+// A light, with the functions and data it is called with at every vertex.
+struct world_light {
+    const struct light_type *type;
+    const void *data;
+    float pmf; // probability of being chosen by world_choose_light
+};
+
+// Transforms of an instance or a quadric as surfaces need them.
+struct world_transform {
+    struct transform to_world, to_object;
+    struct affine forward, inverse; // the same in single precision
+};
+
+struct world {
+    const struct scene *scene;
+    struct accel *accel;
+    struct world_light *lights; // index: as in the scene
+    uint32_t light_count;
+    struct alias_table choice;  // of lights, for next event estimation
+    uint32_t *infinite;         // lights that rays leaving the scene find
+    uint32_t infinite_count;
+    struct world_transform *quadrics;  // by shape; NULL: the scene has none
+    struct world_transform *instances; // by instance
+    bool shadow_rays_may_pass;  // some material lets rays straight through
+    vec3 centre;                // bounding sphere of all shapes
+    float radius;
+    double accel_seconds;       // building it took
+};
+
+// Prepares every texture, material and light of the scene and builds the acceleration structure.
+// The scene must outlive the world. NULL after an error message.
+struct world *world_create(struct scene *scene, int threads);
+void world_destroy(struct world *w);
+
+// One light for next event estimation; SCENE_NONE when the scene has none.
+static inline uint32_t world_choose_light(const struct world *w, float u, float *pmf) {
+    if (w->light_count <= 1) {
+        *pmf = 1;
+        return w->light_count ? 0 : SCENE_NONE;
+    }
+    return alias_sample(&w->choice, u, pmf, NULL);
+}
+
+// What a ray found, ready for shading.
+struct surface {
+    vec3 p, p_error;         // world space; absolute error bound per axis
+    vec3 ng;                 // unit, on the outer side of the shape whatever the ray's side
+    float t;
+    struct bsdf_point point; // shading frame, texture coordinates
+    const struct shape *shape;
+    uint32_t shape_index, primitive, instance;
+};
+
+void world_surface(const struct world *w, const struct ray *ray, const struct accel_hit *hit,
+                   struct surface *s);
+
+// Origin of a ray that leaves the surface on the side w points to.
+static inline vec3 surface_offset(const struct surface *s, vec3 w) {
+    return offset_point(s->p, s->p_error, s->ng, w);
+}
+
+// The shadow ray from a surface to a sampled point of a light: t in (0, 1), or to infinity.
+struct ray world_shadow_ray(const struct surface *s, const struct light_sample *l);
+
+// Share of light that comes through along a shadow ray: 0 where anything opaque is in the way.
+spectrum world_transmittance(const struct world *w, struct ray ray,
+                             struct wavelengths wavelengths);
