@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sink/film.h"
+
+#include <assert.h>
+#include <stdatomic.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "sink/film_layout.h"
+
+enum { MOST_LEVELS = 40 }; // of the tree of blocks: 64 * 2^39 samples
+
+struct film {
+    struct film_options options;
+    struct film_layout layout;
+    int tiles_x, tiles_y, tile_x0, tile_y0; // the grid of tiles, in tiles
+    size_t tile_values;                     // doubles a tile takes
+    double *open[2];                        // sums of the unfinished block: committed, running
+    int committed;
+    double *levels[MOST_LEVELS]; // binary counter: sums of 2^k blocks, or NULL
+    uint64_t blocks;             // finished
+    uint32_t open_samples;       // committed samples of the unfinished block
+    atomic_ullong rejected;
+};
+
+struct film_view {
+    struct sink sink; // first, so that a sink is its view
+    struct film *film;
+    double *sums; // of the open tile
+    uint32_t tile;
+    int x0, y0;
+    struct view_lane {
+        double *pixel;    // NULL: outside the crop
+        uint32_t replicate;
+        float alpha;
+        struct sink_surface first;
+        bool has_first, is_first_sample;
+    } lanes[SINK_LANES];
+    spectrum *slots; // [lane][slot]: what the sample has gathered
+};
+
+// ---- film ---------------------------------------------------------------------------------------
+
+static size_t film_values(const struct film *f) {
+    return f->tile_values * film_tile_count(f);
+}
+
+struct film *film_create(const struct film_options *options) {
+    struct film *f = mem_array(1, sizeof *f);
+    f->options = *options;
+    film_layout_init(&f->layout, options);
+    f->tile_x0 = options->x0 / FILM_TILE;
+    f->tile_y0 = options->y0 / FILM_TILE;
+    f->tiles_x = (options->x1 + FILM_TILE - 1) / FILM_TILE - f->tile_x0;
+    f->tiles_y = (options->y1 + FILM_TILE - 1) / FILM_TILE - f->tile_y0;
+    f->tile_values = (size_t)FILM_TILE * FILM_TILE * f->layout.channels;
+    for (int i = 0; i < 2; i++)
+        f->open[i] = mem_array(film_values(f), sizeof *f->open[i]);
+    return f;
+}
+
+void film_destroy(struct film *f) {
+    if (!f)
+        return;
+    for (int i = 0; i < MOST_LEVELS; i++)
+        mem_free(f->levels[i]);
+    mem_free(f->open[0]);
+    mem_free(f->open[1]);
+    mem_free(f);
+}
+
+size_t film_bytes(const struct film_options *options, uint64_t samples) {
+    struct film_layout layout;
+    film_layout_init(&layout, options);
+    size_t buffers = 2;
+    for (uint64_t blocks = samples / FILM_BLOCK; blocks; blocks >>= 1)
+        buffers++;
+    const size_t pixels = (size_t)(options->x1 - options->x0) * (size_t)(options->y1 - options->y0);
+    return buffers * pixels * layout.channels * sizeof(double);
+}
+
+uint32_t film_tile_count(const struct film *f) {
+    return (uint32_t)(f->tiles_x * f->tiles_y);
+}
+
+uint64_t film_samples(const struct film *f) {
+    return f->blocks * FILM_BLOCK + f->open_samples;
+}
+
+uint64_t film_rejected(const struct film *f) {
+    return atomic_load(&f->rejected);
+}
+
+// Adds the finished block to the binary counter: equal levels add up, older sum first.
+static void carry_block(struct film *f) {
+    const size_t n = film_values(f);
+    double *block = mem_array(n, sizeof *block);
+    memcpy(block, f->open[f->committed], n * sizeof *block);
+    int k = 0;
+    for (; f->levels[k]; k++) {
+        double *older = f->levels[k];
+        for (size_t i = 0; i < n; i++)
+            older[i] += block[i];
+        mem_free(block);
+        block = older;
+        f->levels[k] = NULL;
+    }
+    f->levels[k] = block;
+    f->blocks++;
+    f->open_samples = 0;
+    memset(f->open[f->committed], 0, n * sizeof *f->open[0]);
+}
+
+void film_commit(struct film *f, uint32_t samples) {
+    f->committed ^= 1;
+    f->open_samples += samples;
+    assert(f->open_samples <= FILM_BLOCK);
+    if (f->open_samples == FILM_BLOCK)
+        carry_block(f);
+}
+
+// Sum over all samples so far of one value of the film, in the order of the tree.
+static double film_total(const struct film *f, size_t i) {
+    double sum = f->open[f->committed][i];
+    for (int k = 0; k < MOST_LEVELS; k++)
+        if (f->levels[k])
+            sum = f->levels[k][i] + sum;
+    return sum;
+}
+
+void film_pixel(const struct film *f, int x, int y, double *sums) {
+    const int tx = x / FILM_TILE - f->tile_x0, ty = y / FILM_TILE - f->tile_y0;
+    const size_t tile = (size_t)(ty * f->tiles_x + tx);
+    const size_t inside = (size_t)(y % FILM_TILE * FILM_TILE + x % FILM_TILE);
+    const size_t first = tile * f->tile_values + inside * f->layout.channels;
+    for (uint32_t c = 0; c < f->layout.channels; c++)
+        sums[c] = film_total(f, first + c);
+}
+
+const struct film_layout *film_get_layout(const struct film *f) {
+    return &f->layout;
+}
+
+const struct film_options *film_get_options(const struct film *f) {
+    return &f->options;
+}
+
+// ---- view ---------------------------------------------------------------------------------------
+
+static void view_begin(struct sink *s, int lane) {
+    struct film_view *v = (void *)s;
+    const uint32_t n = v->film->layout.slots;
+    memset(v->slots + (size_t)lane * n, 0, n * sizeof *v->slots);
+    v->lanes[lane].alpha = 0;
+    v->lanes[lane].has_first = false;
+}
+
+static uint32_t path_slot(const struct contribution *c) {
+    if (c->depth == 0)
+        return PATH_EMISSION;
+    const uint32_t kind = c->lobe & LOBE_DIFFUSE ? 0 : c->lobe & LOBE_GLOSSY ? 1 : 2;
+    return (c->depth == 1 ? PATH_DIRECT : PATH_INDIRECT) + kind;
+}
+
+static void view_add(struct sink *s, int lane, const struct contribution *c) {
+    struct film_view *v = (void *)s;
+    const struct film_layout *l = &v->film->layout;
+    const spectrum value = c->weight * c->emission;
+    spectrum *slots = v->slots + (size_t)lane * l->slots;
+    if (l->beauty_slot != LAYOUT_NONE)
+        slots[l->beauty_slot] += value;
+    if (l->group_slot != LAYOUT_NONE)
+        slots[l->group_slot + v->film->options.group_of_light[c->source]] += value;
+    if (l->path_slot != LAYOUT_NONE)
+        slots[l->path_slot + path_slot(c)] += value;
+}
+
+static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
+    struct film_view *v = (void *)s;
+    v->lanes[lane].first = *first;
+    v->lanes[lane].has_first = true;
+}
+
+static void view_covered(struct sink *s, int lane) {
+    ((struct film_view *)(void *)s)->lanes[lane].alpha = 1;
+}
+
+// Adds slot values to doubles, three channels each.
+static void add_slots(double *out, const spectrum *slots, uint32_t count, float weight) {
+    for (uint32_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++)
+            out[3 * i + (uint32_t)k] += (double)(weight * slots[i][k]);
+}
+
+static void view_end(struct sink *s, int lane, float weight) {
+    struct film_view *v = (void *)s;
+    const struct view_lane *at = &v->lanes[lane];
+    const struct film_layout *l = &v->film->layout;
+    spectrum *slots = v->slots + (size_t)lane * l->slots;
+    if (!at->pixel)
+        return;
+    for (uint32_t i = 0; i < l->slots; i++)
+        if (!spectrum_is_finite(slots[i])) {
+            atomic_fetch_add(&v->film->rejected, 1);
+            memset(slots, 0, l->slots * sizeof *slots);
+            break;
+        }
+    add_slots(at->pixel, slots, l->slots, weight);
+    if (l->replicate_channel != LAYOUT_NONE)
+        add_slots(at->pixel + l->replicate_channel + 3 * at->replicate, slots + l->beauty_slot, 1,
+                  weight);
+    if (l->moment_channel != LAYOUT_NONE) {
+        const spectrum x = weight * slots[l->beauty_slot];
+        add_slots(at->pixel + l->moment_channel, &(spectrum){x[0] * x[0], x[1] * x[1], x[2] * x[2], 0},
+                  1, 1);
+    }
+    if (l->alpha_channel != LAYOUT_NONE)
+        at->pixel[l->alpha_channel] += (double)(weight * at->alpha);
+    if (l->aov_channel != LAYOUT_NONE && at->has_first)
+        film_layout_add_aovs(l, at->pixel, &at->first, at->is_first_sample);
+}
+
+static const struct sink_type view_type = {view_begin, view_add, view_surface, view_covered,
+                                           view_end};
+
+struct film_view *film_view_create(struct film *f) {
+    struct film_view *v = mem_array(1, sizeof *v);
+    v->sink = (struct sink){&view_type, f->options.aovs != 0};
+    v->film = f;
+    v->sums = mem_array(f->tile_values, sizeof *v->sums);
+    v->slots = mem_array((size_t)SINK_LANES * f->layout.slots, sizeof *v->slots);
+    return v;
+}
+
+void film_view_destroy(struct film_view *v) {
+    if (!v)
+        return;
+    mem_free(v->sums);
+    mem_free(v->slots);
+    mem_free(v);
+}
+
+struct sink *film_view_sink(struct film_view *v) {
+    return &v->sink;
+}
+
+void film_view_open(struct film_view *v, uint32_t tile) {
+    const struct film *f = v->film;
+    v->tile = tile;
+    v->x0 = (f->tile_x0 + (int)tile % f->tiles_x) * FILM_TILE;
+    v->y0 = (f->tile_y0 + (int)tile / f->tiles_x) * FILM_TILE;
+    memcpy(v->sums, f->open[f->committed] + tile * f->tile_values,
+           f->tile_values * sizeof *v->sums);
+}
+
+static int least(int a, int b) {
+    return a < b ? a : b;
+}
+
+static int most(int a, int b) {
+    return a > b ? a : b;
+}
+
+void film_view_clip(const struct film_view *v, int grid, int *x0, int *y0, int *x1, int *y1) {
+    const struct film_options *o = &v->film->options;
+    *x0 = most(v->x0, o->x0) / grid * grid;
+    *y0 = most(v->y0, o->y0) / grid * grid;
+    *x1 = (least(v->x0 + FILM_TILE, o->x1) + grid - 1) / grid * grid;
+    *y1 = (least(v->y0 + FILM_TILE, o->y1) + grid - 1) / grid * grid;
+}
+
+void film_view_lane(struct film_view *v, int lane, int x, int y, uint32_t sample) {
+    const struct film_options *o = &v->film->options;
+    const bool inside = x >= o->x0 && x < o->x1 && y >= o->y0 && y < o->y1;
+    const size_t pixel = (size_t)((y - v->y0) * FILM_TILE + (x - v->x0));
+    struct view_lane *l = &v->lanes[lane];
+    l->pixel = inside ? v->sums + pixel * v->film->layout.channels : NULL;
+    l->replicate = sample % FILM_REPLICATES;
+    l->is_first_sample = sample == 0;
+}
+
+void film_view_close(struct film_view *v) {
+    struct film *f = v->film;
+    memcpy(f->open[f->committed ^ 1] + v->tile * f->tile_values, v->sums,
+           f->tile_values * sizeof *v->sums);
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The film: a sink that makes a picture, with its layers.
+//
+// Every sample belongs to one pixel. Samples are summed in order, in double, within blocks of 64;
+// blocks combine in the fixed binary tree of their indices. A pass of the driver adds samples
+// [a, b) of one block to every tile; it is committed as a whole, or never was, so all pixels always
+// have equal counts, and where passes begin and end does not change a bit.
+#pragma once
+
+#include "image/image.h"
+#include "sink/sink.h"
+
+enum { FILM_TILE = 32, FILM_BLOCK = 64, FILM_REPLICATES = 16, FILM_MOST_GROUPS = 64 };
+
+enum film_aov {
+    AOV_ALBEDO = 1,
+    AOV_N = 2,
+    AOV_NG = 4,
+    AOV_Z = 8,
+    AOV_P = 16,
+    AOV_UV = 32,
+    AOV_SHAPE = 64,
+    AOV_INSTANCE = 128,
+};
+
+struct film_options {
+    int x0, y0, x1, y1;   // pixels of the absolute grid to render, half-open
+    bool alpha;
+    bool variance;        // squared standard errors of the pixels, from replicates
+    bool moments;         // second moments of single samples, as layer "m2"
+    bool paths;           // direct/indirect x diffuse/glossy/specular layers
+    uint32_t aovs;        // enum film_aov
+    uint32_t group_count; // light group layers; 0: none. The last one takes the rest
+    const char *const *group_names;
+    const uint32_t *group_of_light; // by light index, < group_count
+};
+
+struct film;
+
+// Options are copied except the arrays they point to, which must outlive the film.
+struct film *film_create(const struct film_options *options);
+void film_destroy(struct film *f);
+
+// Bytes a film with these options takes when it holds `samples` samples a pixel.
+size_t film_bytes(const struct film_options *options, uint64_t samples);
+
+// Bits of enum film_aov from "albedo,N,Z"; false after an error message with the known names.
+bool film_aovs_parse(const char *list, uint32_t *aovs);
+
+// Tiles cover the crop; they lie on the absolute grid.
+uint32_t film_tile_count(const struct film *f);
+
+// One worker's view of the film: a sink whose lanes are tied to pixels. (x, y) may lie outside the
+// crop: such a lane is traced for its packet's sake and dropped.
+struct film_view;
+struct film_view *film_view_create(struct film *f);
+void film_view_destroy(struct film_view *v);
+struct sink *film_view_sink(struct film_view *v);
+void film_view_open(struct film_view *v, uint32_t tile);
+// Pixels of the open tile that lie in the crop, widened to multiples of `grid`.
+void film_view_clip(const struct film_view *v, int grid, int *x0, int *y0, int *x1, int *y1);
+void film_view_lane(struct film_view *v, int lane, int x, int y, uint32_t sample);
+void film_view_close(struct film_view *v); // stores the tile's sums as part of the running pass
+
+// The pass added `samples` samples to every tile; they must not cross a block.
+void film_commit(struct film *f, uint32_t samples);
+uint64_t film_samples(const struct film *f);
+
+// Samples whose value was NaN or infinite; they count as black.
+uint64_t film_rejected(const struct film *f);
+// Noise of the picture so far: sqrt of the mean over pixels of SE^2 / (b^2 + 1e-3 mean(b)^2) with
+// luminances b; needs `variance` and two samples, else negative.
+double film_noise(const struct film *f);
+
+// The picture and its layers so far.
+bool film_image(const struct film *f, struct image *im);

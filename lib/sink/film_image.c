@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// From sums to a picture: means, layers, standard errors, noise.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "math/vec.h"
+#include "sink/film_layout.h"
+
+static const double NOT_HIT_Z = 1e10; // depth of pixels that see nothing, as compositors expect
+
+static const char *const path_names[PATH_SLOTS] = {
+    "direct_diffuse",   "direct_glossy",     "direct_specular", "indirect_diffuse",
+    "indirect_glossy", "indirect_specular", "emission"};
+
+// Squared standard error of the mean from the means of the replicates that have samples.
+static void squared_error(const double *replicates, uint64_t samples, double error[3]) {
+    const uint64_t n = samples < FILM_REPLICATES ? samples : FILM_REPLICATES;
+    for (int c = 0; c < 3; c++) {
+        double mean = 0, spread = 0;
+        for (uint64_t r = 0; r < n; r++)
+            mean += replicates[3 * r + (uint64_t)c] / (double)samples;
+        for (uint64_t r = 0; r < n; r++) {
+            const uint64_t count = (samples - r + FILM_REPLICATES - 1) / FILM_REPLICATES;
+            const double d = replicates[3 * r + (uint64_t)c] / (double)count - mean;
+            spread += d * d;
+        }
+        error[c] = n > 1 ? spread / (double)(n * (n - 1)) : 0;
+    }
+}
+
+// The picture's colour: the beauty slot, or the sum of the light groups.
+static void pixel_colour(const struct film_layout *l, const struct film_options *o,
+                         const double *sums, double scale, double rgb[3]) {
+    const uint32_t first = l->group_slot != LAYOUT_NONE ? l->group_slot : l->beauty_slot;
+    const uint32_t count = l->group_slot != LAYOUT_NONE ? o->group_count : 1;
+    for (int c = 0; c < 3; c++) {
+        rgb[c] = 0;
+        for (uint32_t g = 0; g < count; g++)
+            rgb[c] += sums[3 * (first + g) + (uint32_t)c] * scale;
+    }
+}
+
+double film_noise(const struct film *f) {
+    const struct film_layout *l = film_get_layout(f);
+    const struct film_options *o = film_get_options(f);
+    const uint64_t n = film_samples(f);
+    if (l->replicate_channel == LAYOUT_NONE || n < 2)
+        return -1;
+    double *sums = mem_array(l->channels, sizeof *sums);
+    const size_t pixels = (size_t)(o->x1 - o->x0) * (size_t)(o->y1 - o->y0);
+    double *b = mem_array(pixels, sizeof *b), *e = mem_array(pixels, sizeof *e);
+    double mean = 0, noise = 0;
+    size_t i = 0;
+    for (int y = o->y0; y < o->y1; y++)
+        for (int x = o->x0; x < o->x1; x++, i++) {
+            double rgb[3], error[3];
+            film_pixel(f, x, y, sums);
+            pixel_colour(l, o, sums, 1.0 / (double)n, rgb);
+            squared_error(sums + l->replicate_channel, n, error);
+            b[i] = (rgb[0] + rgb[1] + rgb[2]) / 3;
+            e[i] = (error[0] + error[1] + error[2]) / 3;
+            mean += b[i] / (double)pixels;
+        }
+    for (i = 0; i < pixels; i++) {
+        const double scale = b[i] * b[i] + 1e-3 * mean * mean;
+        noise += scale > 0 ? e[i] / scale / (double)pixels : 0;
+    }
+    mem_free(sums);
+    mem_free(b);
+    mem_free(e);
+    return sqrt(noise);
+}
+
+// ---- channels -----------------------------------------------------------------------------------
+
+struct writer {
+    struct image *im; // NULL: only count the channels
+    int next;
+    float *pixel;
+};
+
+// Declares one channel; the value is stored when a pixel is being written.
+static void put(struct writer *w, const char *layer, const char *channel, double value) {
+    if (w->im && w->pixel)
+        w->pixel[w->next] = (float)value;
+    else if (w->im)
+        snprintf(w->im->channel_names[w->next], sizeof w->im->channel_names[0], "%s%s%s", layer,
+                 *layer ? "." : "", channel);
+    w->next++;
+}
+
+static void put_rgb(struct writer *w, const char *layer, const double *sums, double scale) {
+    static const char *const names[3] = {"R", "G", "B"};
+    for (int c = 0; c < 3; c++)
+        put(w, layer, names[c], sums[c] * scale);
+}
+
+static const double *put_xyz(struct writer *w, const char *layer, const double *sums, double scale) {
+    static const char *const names[3] = {"X", "Y", "Z"};
+    for (int c = 0; c < 3; c++)
+        put(w, layer, names[c], sums[c] * scale);
+    return sums + 3;
+}
+
+static void put_aovs(struct writer *w, const struct film_layout *l, const double *sums,
+                     double samples) {
+    const double *in = sums + l->aov_channel;
+    const double hits = *in++;
+    const double all = 1 / samples, hit = hits > 0 ? 1 / hits : 0;
+    if (l->aovs & AOV_ALBEDO) {
+        put_rgb(w, "albedo", in, all);
+        in += 3;
+    }
+    if (l->aovs & AOV_N)
+        in = put_xyz(w, "N", in, hit);
+    if (l->aovs & AOV_NG)
+        in = put_xyz(w, "Ng", in, hit);
+    if (l->aovs & AOV_Z)
+        put(w, "", "Z", hits > 0 ? *in++ * hit : (in++, NOT_HIT_Z));
+    if (l->aovs & AOV_P)
+        in = put_xyz(w, "P", in, hit);
+    if (l->aovs & AOV_UV) {
+        put(w, "uv", "U", *in++ * hit);
+        put(w, "uv", "V", *in++ * hit);
+    }
+    if (l->aovs & AOV_SHAPE)
+        put(w, "shape", "Y", *in++);
+    if (l->aovs & AOV_INSTANCE)
+        put(w, "instance", "Y", *in++);
+}
+
+// All channels of one pixel, in the order of the file.
+static void put_pixel(struct writer *w, const struct film *f, const double *sums) {
+    const struct film_layout *l = film_get_layout(f);
+    const struct film_options *o = film_get_options(f);
+    const uint64_t n = film_samples(f);
+    const double scale = 1.0 / (double)n;
+    double rgb[3];
+    pixel_colour(l, o, sums, scale, rgb);
+    put_rgb(w, "", rgb, 1);
+    if (l->alpha_channel != LAYOUT_NONE)
+        put(w, "", "A", sums[l->alpha_channel] * scale);
+    for (uint32_t g = 0; g < o->group_count; g++)
+        put_rgb(w, o->group_names[g], sums + 3 * (l->group_slot + g), scale);
+    for (uint32_t i = 0; l->path_slot != LAYOUT_NONE && i < PATH_SLOTS; i++)
+        put_rgb(w, path_names[i], sums + 3 * (l->path_slot + i), scale);
+    if (l->moment_channel != LAYOUT_NONE)
+        put_rgb(w, "m2", sums + l->moment_channel, scale);
+    if (l->replicate_channel != LAYOUT_NONE) {
+        double error[3];
+        squared_error(sums + l->replicate_channel, n, error);
+        put_rgb(w, "variance", error, 1);
+    }
+    if (l->aov_channel != LAYOUT_NONE)
+        put_aovs(w, l, sums, (double)n);
+}
+
+bool film_image(const struct film *f, struct image *im) {
+    const struct film_options *o = film_get_options(f);
+    double *sums = mem_array(film_get_layout(f)->channels, sizeof *sums);
+    struct writer w = {0};
+    put_pixel(&w, f, sums);
+    if (!image_init(im, o->x1 - o->x0, o->y1 - o->y0, w.next)) {
+        mem_free(sums);
+        return false;
+    }
+    w = (struct writer){.im = im};
+    put_pixel(&w, f, sums); // names
+    w.pixel = im->pixels;
+    for (int y = o->y0; y < o->y1; y++)
+        for (int x = o->x0; x < o->x1; x++, w.pixel += im->channels) {
+            w.next = 0;
+            film_pixel(f, x, y, sums);
+            put_pixel(&w, f, sums);
+        }
+    mem_free(sums);
+    return true;
+}
