@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrators: the order in which a path is sampled, connected to lights and handed to the sink.
+//
+// A group of 16 paths that start side by side is traced together, so that camera and shadow rays
+// may run as packets; each lane's random numbers and contributions are those it would have alone.
+// Depth counts path edges as Mitsuba does: max_depth 1 sees emitters only, 2 adds direct light,
+// -1 is unlimited. Straight-through (null) events do not count.
+#pragma once
+
+#include "integrator/response.h"
+#include "math/ray.h"
+#include "sampler/sampler.h"
+#include "sink/sink.h"
+#include "world/world.h"
+
+struct path_start {
+    struct ray ray;
+    struct sampler sampler; // after the sensor took its dimensions
+};
+
+// What one worker needs, and counts.
+struct trace_context {
+    const struct world *world;
+    const struct response *response;
+    struct sink *sink;
+    struct closure_stack *stack;
+    uint64_t rays, shadow_rays, paths;
+    uint64_t truncated; // paths that met the hard cap on events: the picture is too dark there
+};
+
+// A path of unlimited depth that neither leaves nor dies is cut here, and counted.
+enum { INTEGRATOR_MOST_EVENTS = 4096 };
+
+// What an integrator wants the film to keep, filled by prepare.
+struct integrator_wants {
+    bool moments;
+    uint32_t aovs; // enum film_aov
+};
+
+struct integrator_type {
+    struct entry entry;
+    // Checks the parameters. false after an error message. NULL: nothing to do.
+    bool (*prepare)(struct object *self, struct integrator_wants *wants);
+    void (*trace)(const void *data, struct trace_context *ctx,
+                  const struct path_start starts[SINK_LANES]);
+};
+
+#define X(name) extern const struct integrator_type integrator_##name;
+#include "integrator/list.h"
+#undef X
+
+extern const struct registry integrators;
+
+static inline const struct integrator_type *integrator_type_of(const struct object *o) {
+    return (const struct integrator_type *)o->type;
+}

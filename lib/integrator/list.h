@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrators, one a line; each is integrator/NAME.c.
+X(path)
+X(direct)
+X(aov)
+X(moment)
+X(simple)

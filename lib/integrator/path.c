@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// Path tracing (Kajiya 1986) with next event estimation, multiple importance sampling (Veach and
+// Guibas 1995) and Russian roulette.
+//
+// Sixteen paths advance together, vertex by vertex, so that the rays that run side by side, those of
+// the camera and the first shadow rays, are traced as packets; later ones are single.
+#include "integrator/vertex.h"
+
+struct path {
+    int max_depth, rr_depth;
+    bool hide_emitters, strict_normals;
+};
+
+static const struct param params[] = {
+    {"max_depth", PARAM_INT, offsetof(struct path, max_depth), .def = "-1", .min = -1, .max = 1e6,
+     .unit = "", .help = "most edges of a path: 1 sees emitters, 2 adds direct light; -1: no limit"},
+    {"rr_depth", PARAM_INT, offsetof(struct path, rr_depth), .def = "5", .min = 1, .max = 1e6,
+     .unit = "", .help = "edges after which Russian roulette may end a path"},
+    {"hide_emitters", PARAM_BOOL, offsetof(struct path, hide_emitters), .def = "false", .unit = "",
+     .help = "do not show lights that are seen directly"},
+    {"strict_normals", PARAM_BOOL, offsetof(struct path, strict_normals), .def = "false",
+     .unit = "", .help = "drop directions on which shading and geometric normal disagree"},
+    PARAM_END,
+};
+
+// Dimensions of a vertex: light 2-D, material 2-D, light choice, lobe choice, roulette.
+enum { CAMERA_DIMENSIONS = 4, VERTEX_DIMENSIONS = 8 };
+
+struct lane {
+    struct ray ray;
+    spectrum beta;
+    float eta2; // product of the squared relative indices crossed: refraction's radiance scaling
+    struct path_origin from;
+    struct sampler sampler;
+    struct shadow_test shadow;
+    uint32_t events; // vertices, null ones included
+    bool alive, first_done;
+};
+
+struct lane_random {
+    struct vec2 light, scatter;
+    float light_choice, lobe, roulette;
+};
+
+static struct lane_random draw(struct lane *l) {
+    struct lane_random r;
+    l->sampler.dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * l->events;
+    r.light = sampler_2d(&l->sampler);
+    r.scatter = sampler_2d(&l->sampler);
+    r.light_choice = sampler_1d(&l->sampler);
+    r.lobe = sampler_1d(&l->sampler);
+    r.roulette = sampler_1d(&l->sampler);
+    return r;
+}
+
+// Whether shading and geometric normal agree on which side w (local wl) is.
+static bool same_side(const struct surface *s, vec3 w, vec3 wl) {
+    return dot(w, s->ng) * cos_theta(wl) > 0;
+}
+
+static bool may_contribute(const struct path *p, uint32_t depth) {
+    return p->max_depth < 0 || depth < (uint32_t)p->max_depth;
+}
+
+static void leave_scene(const struct path *p, struct trace_context *ctx, int i, struct lane *l) {
+    l->alive = false;
+    if (l->from.depth > 0 || !p->hide_emitters)
+        vertex_add_infinite(ctx, i, l->ray.d, l->beta, &l->from);
+}
+
+// First non-null event of the path: coverage and the layers of what is seen first.
+static void first_event(struct trace_context *ctx, int i, struct lane *l, const struct surface *s,
+                        const struct closure *closure) {
+    l->first_done = true;
+    ctx->sink->type->covered(ctx->sink, i);
+    if (ctx->sink->wants_surface)
+        vertex_add_first(ctx, i, s, closure);
+}
+
+static void survive_roulette(const struct path *p, struct lane *l, float u) {
+    if (l->from.depth < (uint32_t)p->rr_depth)
+        return;
+    const float q = fminf(spectrum_max(l->beta) * l->eta2, 0.95f);
+    if (u < q)
+        l->beta /= q;
+    else
+        l->alive = false;
+}
+
+// Continues the path along a sampled direction, or ends it.
+static void scatter(const struct path *p, struct lane *l, const struct surface *s,
+                    const struct bsdf_sample *b, float u_roulette) {
+    const vec3 wi = to_world(&s->point.frame, b->wi);
+    if (b->lobe & LOBE_NULL) { // the surface is not there: direction and origin stay
+        l->beta *= b->weight;
+        l->ray.o = surface_offset(s, l->ray.d);
+        l->ray.tmin = 0;
+        l->ray.tmax = INFINITY;
+        l->events++;
+        return;
+    }
+    if (p->strict_normals && !same_side(s, wi, b->wi)) {
+        l->alive = false;
+        return;
+    }
+    l->beta *= b->weight;
+    l->eta2 *= b->eta * b->eta;
+    if (l->from.depth == 0)
+        l->from.lobe = b->lobe;
+    l->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, l->from.depth + 1,
+                                   l->from.lobe};
+    l->ray = (struct ray){surface_offset(s, wi), wi, 0, INFINITY};
+    l->events++;
+    l->alive = !spectrum_is_black(l->beta);
+    if (l->alive)
+        survive_roulette(p, l, u_roulette);
+}
+
+// One vertex: emission found, light sampled, direction chosen.
+static void shade(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
+                  const struct accel_hit *hit) {
+    struct surface s;
+    world_surface(ctx->world, &l->ray, hit, &s);
+    if (l->from.depth > 0 || !p->hide_emitters)
+        vertex_add_emission(ctx, i, &s, l->ray.d, l->beta, &l->from);
+    const vec3 wo = to_local(&s.point.frame, -l->ray.d);
+    const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
+    const bool ends = !closure || !may_contribute(p, l->from.depth + 1) ||
+                      (p->strict_normals && !same_side(&s, -l->ray.d, wo));
+    struct bsdf_sample b = {.lobe = 0};
+    const struct lane_random r = draw(l);
+    if (!ends && closure->lobes & LOBE_SMOOTH) {
+        vertex_sample_light(ctx, &s, closure, r.light_choice, r.light, 1, &l->shadow);
+        struct contribution *c = &l->shadow.contribution;
+        if (l->shadow.pending && p->strict_normals &&
+            !same_side(&s, c->wi, to_local(&s.point.frame, c->wi)))
+            l->shadow.pending = false;
+        c->weight *= l->beta;
+        c->depth = l->from.depth + 1;
+        c->lobe = l->from.depth ? l->from.lobe : closure->lobes;
+    }
+    const bool scatters = !ends && closure_sample(closure, r.lobe, r.scatter, &b);
+    if (!l->first_done && !(b.lobe & LOBE_NULL))
+        first_event(ctx, i, l, &s, closure);
+    l->alive = scatters;
+    if (scatters)
+        scatter(p, l, &s, &b, r.roulette);
+    if (l->alive && l->events >= INTEGRATOR_MOST_EVENTS) {
+        l->alive = false;
+        ctx->truncated++;
+    }
+}
+
+static void start(struct trace_context *ctx, struct lane *l, const struct path_start *from) {
+    l->ray = from->ray;
+    l->beta = spectrum_grey(1);
+    l->eta2 = 1;
+    l->from = (struct path_origin){.p = from->ray.o, .delta = true};
+    l->sampler = from->sampler;
+    l->shadow.pending = false;
+    l->events = 0;
+    l->alive = true;
+    l->first_done = false;
+    ctx->paths++;
+}
+
+// The shadow rays of one vertex of all lanes; as a packet where they may be coherent.
+static void finish_shadows(struct trace_context *ctx, struct lane lanes[SINK_LANES], bool coherent) {
+    if (coherent && !ctx->world->shadow_rays_may_pass) {
+        struct ray rays[ACCEL_PACKET];
+        uint32_t pending = 0;
+        for (int i = 0; i < SINK_LANES; i++) {
+            rays[i] = lanes[i].shadow.ray;
+            pending |= (uint32_t)lanes[i].shadow.pending << i;
+        }
+        const uint32_t blocked = pending ? accel_occluded16(ctx->world->accel, rays, pending) : 0;
+        for (int i = 0; i < SINK_LANES; i++) {
+            ctx->shadow_rays += lanes[i].shadow.pending;
+            if (lanes[i].shadow.pending && !(blocked >> i & 1))
+                sink_add(ctx->sink, i, &lanes[i].shadow.contribution);
+            lanes[i].shadow.pending = false;
+        }
+        return;
+    }
+    for (int i = 0; i < SINK_LANES; i++)
+        if (lanes[i].shadow.pending) {
+            vertex_finish_light(ctx, i, &lanes[i].shadow);
+            lanes[i].shadow.pending = false;
+        }
+}
+
+static void trace(const void *data, struct trace_context *ctx,
+                  const struct path_start starts[SINK_LANES]) {
+    const struct path *p = data;
+    struct lane lanes[SINK_LANES];
+    struct accel_hit hits[SINK_LANES];
+    struct ray rays[SINK_LANES];
+    for (int i = 0; i < SINK_LANES; i++) {
+        start(ctx, &lanes[i], &starts[i]);
+        rays[i] = starts[i].ray;
+    }
+    if (!may_contribute(p, 0))
+        return;
+    accel_intersect16(ctx->world->accel, rays, 0xffff, hits);
+    for (bool any = true, camera = true; any; camera = false) {
+        any = false;
+        for (int i = 0; i < SINK_LANES; i++) {
+            struct lane *l = &lanes[i];
+            if (!l->alive)
+                continue;
+            ctx->rays++;
+            if (!camera)
+                accel_intersect(ctx->world->accel, &l->ray, &hits[i]);
+            if (hits[i].shape == SCENE_NONE)
+                leave_scene(p, ctx, i, l);
+            else
+                shade(p, ctx, i, l, &hits[i]);
+            any |= l->alive;
+        }
+        finish_shadows(ctx, lanes, camera);
+    }
+}
+
+const struct integrator_type integrator_path = {
+    .entry = {.name = "path",
+              .help = "path tracing with next event estimation and MIS (Kajiya 1986; Veach 1995)",
+              .params = params, .size = sizeof(struct path)},
+    .trace = trace,
+};

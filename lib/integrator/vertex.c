@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "integrator/vertex.h"
+
+void vertex_add_emission(struct trace_context *ctx, int lane, const struct surface *s, vec3 d,
+                         spectrum beta, const struct path_origin *from) {
+    const uint32_t index = s->shape->light;
+    if (index == SCENE_NONE)
+        return;
+    const struct world_light *light = &ctx->world->lights[index];
+    const vec3 to_light = s->p - from->p;
+    const struct light_hit hit = {d, length(to_light), s->ng, s->point.at};
+    const spectrum emission = light->type->emission(light->data, &hit);
+    if (spectrum_is_black(emission))
+        return;
+    float mis = 1;
+    if (!from->delta)
+        mis = mis_weight(from->pdf_sa, light->pmf * light->type->pdf_sa(light->data, from->p, &hit));
+    sink_add(ctx->sink, lane,
+             &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, d});
+}
+
+void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum beta,
+                         const struct path_origin *from) {
+    const struct light_hit hit = {.wi = d, .distance = INFINITY};
+    for (uint32_t i = 0; i < ctx->world->infinite_count; i++) {
+        const uint32_t index = ctx->world->infinite[i];
+        const struct world_light *light = &ctx->world->lights[index];
+        const spectrum emission = light->type->emission(light->data, &hit);
+        float mis = 1;
+        if (!from->delta)
+            mis = mis_weight(from->pdf_sa,
+                             light->pmf * light->type->pdf_sa(light->data, from->p, &hit));
+        sink_add(ctx->sink, lane,
+                 &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, d});
+    }
+}
+
+void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
+                         const struct closure *closure, float u1, struct vec2 u2, float rivals,
+                         struct shadow_test *test) {
+    test->pending = false;
+    float pmf, pdf_bsdf;
+    const uint32_t index = world_choose_light(ctx->world, u1, &pmf);
+    if (index == SCENE_NONE)
+        return;
+    const struct world_light *light = &ctx->world->lights[index];
+    struct light_sample l;
+    if (!light->type->sample(light->data, s->p, u2, &l))
+        return;
+    const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf_bsdf);
+    if (spectrum_is_black(f) || spectrum_is_black(l.emission))
+        return;
+    const float pdf = pmf * l.pdf_sa;
+    const float share = l.delta ? 1 : mis_weight(pdf, rivals * pdf_bsdf);
+    test->contribution = (struct contribution){.weight = f * (share / pdf), .emission = l.emission,
+                                               .source = index, .wi = l.wi};
+    test->ray = world_shadow_ray(s, &l);
+    test->pending = true;
+}
+
+void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test *test) {
+    const struct wavelengths rgb = {0};
+    ctx->shadow_rays++;
+    const spectrum through = world_transmittance(ctx->world, test->ray, rgb);
+    if (spectrum_is_black(through))
+        return;
+    test->contribution.weight *= through;
+    sink_add(ctx->sink, lane, &test->contribution);
+}
+
+void vertex_add_first(struct trace_context *ctx, int lane, const struct surface *s,
+                      const struct closure *closure) {
+    const double *c = ctx->world->scene->centre;
+    const struct sink_surface first = {
+        .p = s->p + v3((float)c[0], (float)c[1], (float)c[2]),
+        .n = s->point.frame.n,
+        .ng = s->ng,
+        .z = s->t,
+        .uv = s->point.at.uv,
+        .shape = s->shape_index + 1,
+        .instance = s->instance == SCENE_NONE ? 0 : s->instance + 1,
+        .albedo = closure && closure->type->albedo ? closure->type->albedo(closure)
+                                                   : spectrum_grey(0)};
+    ctx->sink->type->surface(ctx->sink, lane, &first);
+}

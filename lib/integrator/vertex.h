@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the integrators share at a path's vertices: emission that is found, light that is sampled.
+#pragma once
+
+#include "integrator/integrator.h"
+
+// Veach and Guibas 1995, power heuristic with exponent 2, safe for any finite densities.
+static inline float mis_weight(float pdf, float other) {
+    if (!(pdf > 0))
+        return 0;
+    const float r = other / pdf;
+    return r < 1e15f ? 1 / (1 + r * r) : 0;
+}
+
+// Where a path came from when it finds light: the last vertex that scattered, and how.
+struct path_origin {
+    vec3 p;           // that vertex (or the sensor)
+    float pdf_sa;     // of the direction taken there; unused when delta
+    bool delta;       // no light sampling could have found this light
+    uint32_t depth;   // scattering events so far
+    uint32_t lobe;    // of the first event
+};
+
+// Hands out the emission of the surface that was hit, if it is a light's.
+void vertex_add_emission(struct trace_context *ctx, int lane, const struct surface *s, vec3 d,
+                         spectrum beta, const struct path_origin *from);
+// Hands out the infinite lights, for a ray that left the scene along unit d.
+void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum beta,
+                         const struct path_origin *from);
+
+// A light sample waiting for its shadow ray.
+struct shadow_test {
+    struct ray ray;
+    struct contribution contribution;
+    bool pending;
+};
+
+// Samples one light from a surface: fills the test, or leaves it not pending. `rivals` is how many
+// material samples there are for each light sample, for MIS; 0: none, and for delta lights.
+void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
+                         const struct closure *closure, float u1, struct vec2 u2, float rivals,
+                         struct shadow_test *test);
+
+// Runs the shadow ray of a pending test and hands out what comes through.
+void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test *test);
+
+// Fills and hands out the sink's first-hit record, when wanted.
+void vertex_add_first(struct trace_context *ctx, int lane, const struct surface *s,
+                      const struct closure *closure);
