@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver/light_groups.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "sink/film.h"
+
+static bool any_named(const struct scene *s) {
+    for (uint32_t i = 0; i < s->light_count; i++)
+        if (s->lights[i].group)
+            return true;
+    return false;
+}
+
+static uint32_t find_or_add(struct light_groups *g, const char *name) {
+    for (uint32_t i = 0; i < g->count; i++)
+        if (strcmp(g->names[i], name) == 0)
+            return i;
+    g->names[g->count] = name;
+    return g->count++;
+}
+
+bool light_groups_init(struct light_groups *g, const struct scene *s) {
+    const bool named = any_named(s);
+    g->names = mem_array(s->light_count + 1, sizeof *g->names);
+    g->of_light = mem_array(s->light_count, sizeof *g->of_light);
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        const char *name = named ? s->lights[i].group : s->lights[i].name;
+        g->of_light[i] = name ? find_or_add(g, name) : UINT32_MAX;
+    }
+    const uint32_t rest = g->count;
+    g->names[g->count++] = "rest";
+    for (uint32_t i = 0; i < s->light_count; i++)
+        if (g->of_light[i] == UINT32_MAX)
+            g->of_light[i] = rest;
+    if (rest <= FILM_MOST_GROUPS)
+        return true;
+    const struct film_options film = {.x1 = s->film.width, .y1 = s->film.height,
+                                      .group_count = g->count};
+    log_error("%s: --light-groups would take %u layers (%.1f GiB while rendering); at most %d are "
+              "written: give the lights `group` names", s->path, rest,
+              (double)film_bytes(&film, FILM_BLOCK) / 0x1p30, FILM_MOST_GROUPS);
+    return false;
+}
+
+void light_groups_finish(struct light_groups *g) {
+    mem_free(g->names);
+    mem_free(g->of_light);
+    *g = (struct light_groups){0};
+}

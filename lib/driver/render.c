@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver/render.h"
+
+#include <stdatomic.h>
+
+#include "base/mem.h"
+#include "base/thread.h"
+
+enum { PACKET_SIDE = 4 }; // a packet of 16 is a 4x4 block of the absolute pixel grid
+
+static const double PASS_SECONDS = 0.8; // wished length of a pass, so that stopping is quick
+static const double STOP_SECONDS = 1.5; // a running pass may take this long after a stop
+
+struct worker {
+    struct film_view *view;
+    struct trace_context ctx;
+    struct closure_stack stack;
+};
+
+struct pass {
+    const struct object *sensor, *integrator;
+    const struct filter_sampler *filter;
+    const struct render_options *options;
+    const struct film *film;
+    struct worker *workers;
+    uint32_t first, count; // samples
+    atomic_bool abandoned;
+    _Atomic double stop_time; // when the stop was first seen; 0: not yet
+};
+
+// The sixteen paths of one packet for one sample.
+static void start_paths(const struct pass *p, int x0, int y0, uint32_t sample,
+                        struct path_start starts[SINK_LANES], float weights[SINK_LANES]) {
+    const struct sensor_type *sensor = sensor_type_of(p->sensor);
+    const struct render_options *o = p->options;
+    for (int i = 0; i < SINK_LANES; i++) {
+        const int x = x0 + i % PACKET_SIDE, y = y0 + i / PACKET_SIDE;
+        struct sampler s = sampler_start(o->sampler, (uint32_t)x, (uint32_t)y, sample, o->spp,
+                                         o->replicates, o->seed);
+        const struct vec2 d = filter_sample(p->filter, sampler_2d(&s), &weights[i]);
+        const struct vec2 lens = sampler_2d(&s);
+        sensor->ray(p->sensor->data, (float)x + 0.5f + d.x, (float)y + 0.5f + d.y, lens,
+                    &starts[i].ray);
+        starts[i].sampler = s;
+    }
+}
+
+static void trace_packet(const struct pass *p, struct worker *w, int x0, int y0, uint32_t sample) {
+    struct path_start starts[SINK_LANES];
+    float weights[SINK_LANES];
+    struct sink *sink = w->ctx.sink;
+    start_paths(p, x0, y0, sample, starts, weights);
+    for (int i = 0; i < SINK_LANES; i++) {
+        film_view_lane(w->view, i, x0 + i % PACKET_SIDE, y0 + i / PACKET_SIDE, sample);
+        sink->type->begin(sink, i);
+    }
+    integrator_type_of(p->integrator)->trace(p->integrator->data, &w->ctx, starts);
+    for (int i = 0; i < SINK_LANES; i++)
+        sink->type->end(sink, i, weights[i]);
+}
+
+// Whether the pass is to be given up: a stop was asked for, and finishing takes too long.
+static bool give_up(struct pass *p) {
+    if (!p->options->stop || !*p->options->stop)
+        return false;
+    const double now = time_seconds();
+    double none = 0;
+    atomic_compare_exchange_strong(&p->stop_time, &none, now);
+    if (now - atomic_load(&p->stop_time) > STOP_SECONDS)
+        atomic_store(&p->abandoned, true);
+    return atomic_load(&p->abandoned);
+}
+
+static void trace_tile(void *ctx, size_t tile, int index) {
+    struct pass *p = ctx;
+    struct worker *w = &p->workers[index];
+    int x0, y0, x1, y1;
+    accel_thread_init();
+    if (give_up(p))
+        return;
+    film_view_open(w->view, (uint32_t)tile);
+    film_view_clip(w->view, PACKET_SIDE, &x0, &y0, &x1, &y1);
+    for (uint32_t s = p->first; s < p->first + p->count; s++) {
+        for (int y = y0; y < y1; y += PACKET_SIDE)
+            for (int x = x0; x < x1; x += PACKET_SIDE)
+                trace_packet(p, w, x, y, s);
+        if (give_up(p))
+            return;
+    }
+    film_view_close(w->view);
+}
+
+static struct worker *create_workers(const struct world *world, struct film *film, int threads) {
+    struct worker *workers = mem_array((size_t)threads, sizeof *workers);
+    for (int i = 0; i < threads; i++) {
+        struct worker *w = &workers[i];
+        w->view = film_view_create(film);
+        w->ctx = (struct trace_context){.world = world, .response = &response_physical,
+                                        .sink = film_view_sink(w->view), .stack = &w->stack};
+    }
+    return workers;
+}
+
+static void destroy_workers(struct worker *workers, int threads, struct render_result *r) {
+    for (int i = 0; i < threads; i++) {
+        const struct trace_context *c = &workers[i].ctx;
+        r->rays += c->rays;
+        r->shadow_rays += c->shadow_rays;
+        r->paths += c->paths;
+        r->truncated += c->truncated;
+        film_view_destroy(workers[i].view);
+    }
+    mem_free(workers);
+}
+
+// Length of the next pass: about PASS_SECONDS, never across a block of the film.
+static uint32_t pass_length(uint64_t done, uint32_t spp, double seconds_per_sample) {
+    const uint64_t to_block = FILM_BLOCK - done % FILM_BLOCK, left = spp - done;
+    double most = seconds_per_sample > 0 ? PASS_SECONDS / seconds_per_sample : 1;
+    most = most < 1 ? 1 : most;
+    uint64_t n = to_block < left ? to_block : left;
+    if ((double)n > most)
+        n = (uint64_t)most;
+    return (uint32_t)n;
+}
+
+void render(const struct world *world, const struct object *sensor, const struct object *integrator,
+            const struct filter_sampler *filter, struct film *film,
+            const struct render_options *options, struct render_result *result) {
+    const int threads = options->threads > 0 ? options->threads : thread_default_count();
+    const double start = time_seconds();
+    *result = (struct render_result){0};
+    struct pass p = {.sensor = sensor, .integrator = integrator, .filter = filter,
+                     .options = options, .film = film,
+                     .workers = create_workers(world, film, threads)};
+    double per_sample = 0;
+    while (film_samples(film) < options->spp && !(options->stop && *options->stop)) {
+        const double pass_start = time_seconds();
+        p.first = (uint32_t)film_samples(film);
+        p.count = pass_length(p.first, options->spp, per_sample);
+        thread_for(threads, film_tile_count(film), trace_tile, &p);
+        if (atomic_load(&p.abandoned))
+            break;
+        film_commit(film, p.count);
+        per_sample = (time_seconds() - pass_start) / p.count;
+        if (options->progress)
+            options->progress(options->user, (double)film_samples(film) / options->spp, film);
+    }
+    result->samples = film_samples(film);
+    result->stopped = result->samples < options->spp;
+    destroy_workers(p.workers, threads, result);
+    result->seconds = time_seconds() - start;
+}

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The driver: runs sensor, integrator and sink over tiles, samples and threads.
+//
+// The picture is a function of scene, options and seed, not of the number of threads, the crop or
+// where the work was cut into passes.
+#pragma once
+
+#include <signal.h>
+
+#include "filter/filter.h"
+#include "integrator/integrator.h"
+#include "sensor/sensor.h"
+#include "sink/film.h"
+
+struct render_options {
+    const struct sampler_type *sampler;
+    uint32_t spp;        // samples per pixel wanted, >= 1
+    uint32_t seed;
+    uint32_t replicates; // independent scramblings a pixel's samples are dealt to: 1 to 16, power of 2
+    int threads;         // 0: default
+    const volatile sig_atomic_t *stop; // becomes non-zero: finish within two seconds
+    // Called between passes, with the share done; NULL: nobody listens.
+    void (*progress)(void *user, double done, const struct film *film);
+    void *user;
+};
+
+struct render_result {
+    uint64_t samples; // of every pixel
+    bool stopped;     // before all samples were done
+    double seconds;
+    uint64_t rays, shadow_rays, paths, truncated;
+};
+
+// Traces into the film. sensor and integrator are prepared objects.
+void render(const struct world *world, const struct object *sensor, const struct object *integrator,
+            const struct filter_sampler *filter, struct film *film,
+            const struct render_options *options, struct render_result *result);
