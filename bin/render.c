@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// relume render: a picture from a scene file.
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/json.h"
+#include "base/progress.h"
+#include "base/log.h"
+#include "base/mem.h"
+#include "driver/job.h"
+#include "driver/stop.h"
+#include "subcommand.h"
+
+struct values {
+    const char *scene, *output, *integrator, *sampler, *max_depth, *aovs;
+    int spp, size[2], crop[4], seed, threads;
+    bool variance, light_groups, paths, half, lenient, quiet, json;
+    struct option_list defines;
+};
+
+static const struct option_argument arguments[] = {
+    {"SCENE", offsetof(struct values, scene), "Mitsuba XML scene (.xml)", false, false},
+    {.name = NULL},
+};
+
+#define AT(member) offsetof(struct values, member)
+
+static const struct option_spec options[] = {
+    {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output), .argument = "OUT.exr",
+     .help = "the picture to write", .required = true},
+    {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
+     .help = "samples per pixel; 0: what the scene asks for", .def = "0"},
+    {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
+     .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
+    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
+     .min = 0, .max = 65536, .help = "render these pixels only; X1 and Y1 are just past the last"},
+    {.name = "integrator", .type = OPTION_TEXT, .offset = AT(integrator), .argument = "NAME",
+     .help = "integrator in place of the scene's"},
+    {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
+     .help = "sampler in place of the scene's"},
+    {.name = "max-depth", .type = OPTION_TEXT, .offset = AT(max_depth), .argument = "N",
+     .help = "most edges of a path: 1 emitters, 2 direct light; -1: no limit"},
+    {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
+     .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
+    {.name = "aov", .type = OPTION_TEXT, .offset = AT(aovs), .argument = "LIST",
+     .help = "layers of what is seen first: albedo,N,Ng,Z,P,uv,shape,instance"},
+    {.name = "variance", .type = OPTION_FLAG, .offset = AT(variance),
+     .help = "write the squared standard error of each pixel as layer `variance`"},
+    {.name = "light-groups", .type = OPTION_FLAG, .offset = AT(light_groups),
+     .help = "write a layer per emitter, or per `group` name"},
+    {.name = "paths", .type = OPTION_FLAG, .offset = AT(paths),
+     .help = "write direct/indirect x diffuse/glossy/specular layers"},
+    {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
+    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
+     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME; may be repeated"},
+    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
+     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_THREADS(struct values, threads),
+    OPTION_QUIET(struct values, quiet),
+    OPTION_JSON(struct values, json),
+    OPTION_END,
+};
+
+// "name=value" texts as defines; the names are copied into an arena. NULL after a message.
+static struct scene_define *parse_defines(const struct option_list *list, struct arena *arena) {
+    struct scene_define *d = arena_alloc(arena, (list->count + 1) * sizeof *d);
+    for (size_t i = 0; i < list->count; i++) {
+        const char *equals = strchr(list->items[i], '=');
+        if (!equals || equals == list->items[i]) {
+            log_error("-D %s: expected NAME=VALUE", list->items[i]);
+            return NULL;
+        }
+        d[i].name = arena_printf(arena, "%.*s", (int)(equals - list->items[i]), list->items[i]);
+        d[i].value = equals + 1;
+    }
+    return d;
+}
+
+static void show_progress(void *user, double done, const struct film *film) {
+    char note[64] = "";
+    const double noise = film_noise(film);
+    if (noise >= 0)
+        snprintf(note, sizeof note, "noise %.2f %%", 100 * noise);
+    progress_update(user, done, note);
+}
+
+static void set_attributes(struct image *im, const struct values *v, const char *command,
+                           const struct job_result *r) {
+    char hash[32];
+    snprintf(hash, sizeof hash, "%016" PRIx64, r->scene_hash);
+    image_set_text(im, "relume.command", command);
+    image_set_text(im, "relume.version", RELUME_VERSION);
+    image_set_text(im, "relume.sceneHash", hash);
+    image_set_text(im, "relume.colourSpace", "linear Rec.709");
+    image_set_number(im, "relume.samples", (double)r->render.samples);
+    image_set_number(im, "relume.seed", v->seed);
+    image_set_number(im, "relume.seconds", r->render.seconds);
+}
+
+static void report(const struct values *v, const struct job_result *r, uint64_t overflows) {
+    const struct render_result *t = &r->render;
+    if (r->rejected)
+        log_warn("%" PRIu64 " samples were not finite and count as black", r->rejected);
+    if (t->truncated)
+        log_warn("%" PRIu64 " of %" PRIu64 " paths met the cap of %d events and were cut: the "
+                 "picture is too dark by what they would have brought", t->truncated, t->paths,
+                 INTEGRATOR_MOST_EVENTS);
+    if (overflows)
+        log_warn("%" PRIu64 " values were beyond the range of half and became infinite", overflows);
+    if (!v->quiet)
+        log_info("%s: %" PRIu64 " samples per pixel in %.2f s, %.2f Mpaths/s, %.2f Mrays/s",
+                 v->output, t->samples, t->seconds, (double)t->paths / t->seconds * 1e-6,
+                 (double)(t->rays + t->shadow_rays) / t->seconds * 1e-6);
+}
+
+static void report_json(const struct values *v, const struct job_result *r) {
+    const struct render_result *t = &r->render;
+    struct json *j = json_new_object();
+    json_add_text(j, "output", v->output);
+    json_add_number(j, "samples", (double)t->samples);
+    json_add_number(j, "seconds", t->seconds);
+    json_add_number(j, "load_seconds", r->load_seconds);
+    json_add_number(j, "accel_seconds", r->accel_seconds);
+    json_add_number(j, "accel_bytes", (double)r->accel_bytes);
+    json_add_number(j, "peak_bytes", (double)mem_peak());
+    json_add_number(j, "triangles", (double)r->triangles);
+    json_add_number(j, "paths", (double)t->paths);
+    json_add_number(j, "rays", (double)t->rays);
+    json_add_number(j, "shadow_rays", (double)t->shadow_rays);
+    json_add_number(j, "truncated_paths", (double)t->truncated);
+    json_add_number(j, "rejected_samples", (double)r->rejected);
+    if (r->noise >= 0)
+        json_add_number(j, "noise", r->noise);
+    json_print(j, false);
+    json_destroy(j);
+}
+
+static int write_result(const struct values *v, const char *command, struct job_result *r) {
+    uint64_t overflows = 0;
+    const struct image_exr_options exr = {.half = v->half, .half_overflows = &overflows};
+    set_attributes(&r->image, v, command, r);
+    if (!image_write_exr(v->output, &r->image, &exr))
+        return EXIT_FAILED;
+    report(v, r, overflows);
+    if (v->json)
+        report_json(v, r);
+    return r->render.stopped ? EXIT_UNCONVERGED : EXIT_DONE;
+}
+
+static int run(const void *values, const char *command) {
+    const struct values *v = values;
+    struct arena arena = {0};
+    char temp[4096];
+    struct progress progress;
+    int code = EXIT_FAILED;
+    struct job_result result = {0};
+    const struct scene_define *defines = parse_defines(&v->defines, &arena);
+    if (!defines) {
+        code = EXIT_USAGE;
+        goto done;
+    }
+    if (!file_temp_name(v->output, temp, sizeof temp)) // know now, not after an hour
+        goto done;
+    progress_begin(&progress, "render", v->quiet);
+    const struct job_options job = {
+        .scene = v->scene, .spp = v->spp, .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
+        .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
+        .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
+        .stop = stop_on_signals(), .progress = v->quiet ? NULL : show_progress, .user = &progress,
+        .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
+                    .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],
+                    .height = v->size[1]}};
+    const bool rendered = job_run(&job, &result);
+    progress_end(&progress);
+    if (rendered)
+        code = write_result(v, command, &result);
+done:
+    image_finish(&result.image);
+    arena_finish(&arena);
+    return code;
+}
+
+const struct subcommand subcommand_render = {
+    .entry = {.name = "render", .help = "make a picture from a scene file",
+              .size = sizeof(struct values)},
+    .options = {.options = options, .arguments = arguments,
+                .description = "Path traces SCENE. Stops at --spp samples per pixel, or on Ctrl-C "
+                               "with what is complete (exit code 3).",
+                .examples = "relume render scene.xml -o out.exr --spp 256\n"
+                            "relume render scene.xml -o out.exr --size 640x360 --aov albedo,N,Z "
+                            "--variance\n"
+                            "relume render scene.xml -o lights.exr --light-groups"},
+    .run = run,
+};
