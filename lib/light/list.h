@@ -1,2 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lights, one a line; each is light/NAME.c.
+X(area)
+X(constant)
+X(point)

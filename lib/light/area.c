@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// A shape that emits the same radiance in all directions on the side of its normal.
+#include "light/area_shape.h"
+
+struct area {
+    struct texture_ref radiance;
+    // made by prepare
+    bool is_mesh;
+    struct area_mesh mesh;
+    struct area_quadric quadric;
+};
+
+static const struct param params[] = {
+    {"radiance", PARAM_TEXTURE_EMISSION, offsetof(struct area, radiance), .def = "1", .min = 0,
+     .max = 1e30, .unit = "W/(sr m^2)", .help = "emitted radiance"},
+    LIGHT_PARAMS,
+    PARAM_END,
+};
+
+static bool prepare(struct object *self, const struct light_scene *scene, struct arena *arena) {
+    struct area *a = self->data;
+    (void)arena;
+    if (!scene->shape) {
+        log_error_at(self->at, "area: an area light stands alone, expected it inside a shape");
+        return false;
+    }
+    a->is_mesh = scene->shape->kind == SHAPE_MESH;
+    const bool ok = a->is_mesh ? area_mesh_init(&a->mesh, scene->shape)
+                               : area_quadric_init(&a->quadric, scene->shape);
+    if (!ok)
+        log_error_at(self->at, "area: the shape '%s' has no area, expected one that can emit",
+                     scene->shape->name);
+    return ok;
+}
+
+static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample *s) {
+    const struct area *a = data;
+    struct texture_point at = {0}, *want = a->radiance.texture ? &at : NULL;
+    const bool ok = a->is_mesh ? area_mesh_sample(&a->mesh, p, u, s, want)
+                               : area_quadric_sample(&a->quadric, p, u, s, want);
+    if (!ok)
+        return false;
+    s->delta = false;
+    s->emission = texture_eval(&a->radiance, &at);
+    return true;
+}
+
+static spectrum emission(const void *data, const struct light_hit *hit) {
+    const struct area *a = data;
+    const bool faces = a->is_mesh ? area_mesh_faces(&a->mesh, hit) : dot(hit->ng, hit->wi) < 0;
+    return faces ? texture_eval(&a->radiance, &hit->at) : spectrum_grey(0);
+}
+
+static float pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
+    const struct area *a = data;
+    return a->is_mesh ? area_mesh_pdf_sa(&a->mesh, p, hit)
+                      : area_quadric_pdf_sa(&a->quadric, p, hit);
+}
+
+static float power(const void *data) {
+    const struct area *a = data;
+    const float area = a->is_mesh ? a->mesh.area : a->quadric.area;
+    return PI * area * spectrum_luminance(texture_mean(&a->radiance));
+}
+
+static void finish(void *data) {
+    struct area *a = data;
+    if (a->is_mesh)
+        area_mesh_finish(&a->mesh);
+}
+
+const struct light_type light_area = {
+    .entry = {.name = "area", .help = "emitting surface", .params = params,
+              .size = sizeof(struct area)},
+    .prepare = prepare, .sample = sample, .emission = emission, .pdf_sa = pdf_sa, .power = power,
+    .finish = finish,
+};
