@@ -109,6 +109,21 @@ static inline const struct closure *bsdf_resolve(const struct object *o,
     return bsdf_type_of(o)->resolve(o->data, point, wo, stack);
 }
 
+static inline uint32_t bsdf_lobes(const struct object *o) {
+    return bsdf_type_of(o)->lobes(o->data);
+}
+
+static inline spectrum bsdf_null_transmittance(const struct object *o,
+                                               const struct bsdf_point *point, vec3 wo) {
+    const struct bsdf_type *type = bsdf_type_of(o);
+    return type->null_transmittance ? type->null_transmittance(o->data, point, wo)
+                                    : spectrum_grey(0);
+}
+
+// Refuses nesting that a closure_stack cannot hold; every material with children asks in prepare.
+// false after an error message.
+bool bsdf_check_nesting(const struct object *o);
+
 static inline spectrum closure_eval(const struct closure *c, vec3 wi, float *pdf_sa) {
     return c->type->eval(c, wi, pdf_sa);
 }
@@ -116,4 +131,8 @@ static inline spectrum closure_eval(const struct closure *c, vec3 wi, float *pdf
 static inline bool closure_sample(const struct closure *c, float u1, struct vec2 u2,
                                   struct bsdf_sample *s) {
     return c->type->sample(c, u1, u2, s);
+}
+
+static inline spectrum closure_albedo(const struct closure *c) {
+    return c->type->albedo(c);
 }

@@ -20,10 +20,10 @@ struct vec2 texture_gradient(const struct texture_ref *r, const struct texture_p
     struct texture_point a = *at, b = *at;
     a.uv.x -= h;
     b.uv.x += h;
-    const float du = spectrum_mean(texture_eval(r, &b)) - spectrum_mean(texture_eval(r, &a));
+    const float du = texture_eval_scalar(r, &b) - texture_eval_scalar(r, &a);
     a.uv = b.uv = at->uv;
     a.uv.y -= h;
     b.uv.y += h;
-    const float dv = spectrum_mean(texture_eval(r, &b)) - spectrum_mean(texture_eval(r, &a));
+    const float dv = texture_eval_scalar(r, &b) - texture_eval_scalar(r, &a);
     return (struct vec2){du / (2 * h), dv / (2 * h)};
 }

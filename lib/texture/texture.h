@@ -29,7 +29,7 @@ struct texture_type {
     // until finish. false after an error message.
     bool (*prepare)(void *data, struct arena *arena);
     spectrum (*eval)(const void *data, const struct texture_point *at);
-    // Gradient of lane-mean with respect to (u, v), for bump maps. NULL: by finite differences.
+    // Gradient of the luminance with respect to (u, v), for bump maps. NULL: by finite differences.
     struct vec2 (*gradient)(const void *data, const struct texture_point *at);
     // Mean over the unit square, for sampling decisions and previews.
     spectrum (*mean)(const void *data);
@@ -50,9 +50,10 @@ static inline spectrum texture_eval(const struct texture_ref *r, const struct te
     return r->texture ? texture_type_of(r->texture)->eval(r->texture->data, at) : r->value;
 }
 
+// A coloured texture as a number is its luminance.
 static inline float texture_eval_scalar(const struct texture_ref *r,
                                         const struct texture_point *at) {
-    return texture_eval(r, at)[0];
+    return r->texture ? spectrum_luminance(texture_eval(r, at)) : r->value[0];
 }
 
 static inline spectrum texture_mean(const struct texture_ref *r) {

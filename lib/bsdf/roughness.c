@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bsdf/roughness.h"
+
+const char *const roughness_distributions[] = {"beckmann", "ggx", NULL};
+
+static bool is_given(const struct texture_ref *r) {
+    return r->texture || r->value[0] >= 0;
+}
+
+bool roughness_prepare(const struct roughness *r, const struct object *self) {
+    if (is_given(&r->alpha_u) != is_given(&r->alpha_v)) {
+        log_error_at(self->at, "%s: one of alpha_u and alpha_v was found, both are needed",
+                     self->type->name);
+        return false;
+    }
+    return true;
+}
+
+uint32_t roughness_lobes(const struct roughness *r) {
+    const bool pair = is_given(&r->alpha_u);
+    const struct texture_ref *u = pair ? &r->alpha_u : &r->alpha, *v = pair ? &r->alpha_v : u;
+    if (u->texture || v->texture)
+        return LOBE_GLOSSY | LOBE_SPECULAR;
+    return fmaxf(u->value[0], v->value[0]) >= MICROFACET_ALPHA_MIN ? LOBE_GLOSSY : LOBE_SPECULAR;
+}

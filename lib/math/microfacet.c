@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "math/microfacet.h"
+
+#include <assert.h>
+
+#include "math/elementary.h"
+#include "math/fresnel.h"
+#include "math/quadrature.h"
+
+float erf_inverse(float x) {
+    float w = -fast_log(fmaxf((1 - x) * (1 + x), 1.2e-7f));
+    float p;
+    if (w < 5) {
+        w -= 2.5f;
+        p = 2.81022636e-08f;
+        p = 3.43273939e-07f + p * w;
+        p = -3.5233877e-06f + p * w;
+        p = -4.39150654e-06f + p * w;
+        p = 0.00021858087f + p * w;
+        p = -0.00125372503f + p * w;
+        p = -0.00417768164f + p * w;
+        p = 0.246640727f + p * w;
+        p = 1.50140941f + p * w;
+    } else {
+        w = sqrtf(w) - 3;
+        p = -0.000200214257f;
+        p = 0.000100950558f + p * w;
+        p = 0.00134934322f + p * w;
+        p = -0.00367342844f + p * w;
+        p = 0.00573950773f + p * w;
+        p = -0.0076224613f + p * w;
+        p = 0.00943887047f + p * w;
+        p = 1.00167406f + p * w;
+        p = 2.83297682f + p * w;
+    }
+    return p * x;
+}
+
+// The hemisphere of GGX facets is the upper half of an ellipsoid; stretched to a sphere, what v
+// sees of it is a spherical cap reflected at v (Heitz 2018, Sampling the GGX Distribution of
+// Visible Normals; in the form of Dupuy and Benyoub 2023, Sampling Visible GGX Normals with
+// Spherical Caps). h_z = c_z + v_z is formed without cancellation.
+static vec3 sample_ggx(const struct microfacet *m, vec3 v, struct vec2 u) {
+    const vec3 s = normalize(v3(m->alpha_u * v[0], m->alpha_v * v[1], v[2]));
+    const float hz = (1 - u.y) * (1 + s[2]), cz = hz - s[2];
+    const float r = safe_sqrt((1 - cz) * (1 + cz));
+    float sine, cosine;
+    sincos_turn(u.x, &sine, &cosine);
+    const float hx = r * cosine + s[0], hy = r * sine + s[1];
+    return normalize(v3(m->alpha_u * hx, m->alpha_v * hy, fmaxf(hz, 1e-20f)));
+}
+
+// Slope along v of a visible facet of the Beckmann surface with alpha = 1, where v has cotangent
+// c > 0 with the normal. With s = erf^-1(x), the distribution function is g(x) / g(erf c),
+//
+//     g(x) = c (1 + x) + exp(-s^2) / sqrt(pi),    g'(x) = c - s
+//
+// found by Newton's method inside a bracket, from the solution for grazing v (Jakob 2014, An
+// Improved Visible Normal Sampling Routine for the Beckmann Distribution; there divided by c,
+// which overflows).
+static float sample_beckmann_slope(float c, float u) {
+    const float inv_sqrt_pi = 0.56418958f;
+    u = clampf(u, 1e-7f, 1 - 1e-7f);
+    if (c > 1e4f)
+        return erf_inverse(2 * u - 1);
+    const float e = fast_exp(-c * c), end = 1 - erfc_given_exp(c, e);
+    const float total = c * (1 + end) + inv_sqrt_pi * e;
+    float lo = -1, hi = end, slope = 0;
+    float x = end - (end + 1) * (1 - erfc_given_exp(sqrtf(-fast_log(u)), u));
+    for (int i = 0; i < 10; i++) {
+        x = x > lo && x < hi ? x : 0.5f * (lo + hi);
+        slope = erf_inverse(x);
+        const float value = c * (1 + x) + inv_sqrt_pi * fast_exp(-slope * slope) - u * total;
+        if (fabsf(value) <= 1e-6f * total)
+            break;
+        if (value > 0)
+            hi = x;
+        else
+            lo = x;
+        x -= value / (c - slope);
+    }
+    return fminf(slope, c);
+}
+
+static vec3 sample_beckmann(const struct microfacet *m, vec3 v, struct vec2 u) {
+    const float t = sqrtf(microfacet_stretch2(m, v));
+    const float c = v[2] / fmaxf(t, 1e-30f);
+    const float along = sample_beckmann_slope(c, u.x);
+    const float across = erf_inverse(2 * clampf(u.y, 3e-8f, 1 - 6e-8f) - 1);
+    const float inv = t > 0 ? 1 / t : 0;
+    const float cos_phi = t > 0 ? m->alpha_u * v[0] * inv : 1;
+    const float sin_phi = m->alpha_v * v[1] * inv;
+    const float x = cos_phi * along - sin_phi * across;
+    const float y = sin_phi * along + cos_phi * across;
+    return normalize(v3(-m->alpha_u * x, -m->alpha_v * y, 1));
+}
+
+vec3 microfacet_sample(const struct microfacet *m, vec3 v, struct vec2 u) {
+    return m->type == MICROFACET_GGX ? sample_ggx(m, v, u) : sample_beckmann(m, v, u);
+}
+
+// Shares of the light that arrives along v at a facet h: reflected and refracted, each masked on
+// its way out.
+static void facet_shares(const struct microfacet *m, float eta, vec3 v, vec3 h, double *reflected,
+                         double *transmitted) {
+    const float c = dot(v, h);
+    float cos_t;
+    *reflected = *transmitted = 0;
+    if (c <= 0)
+        return;
+    const float F = fresnel_dielectric(c, eta, &cos_t);
+    const vec3 r = 2 * c * h - v;
+    const vec3 t = (c / eta - cos_t) * h - v / eta;
+    if (r[2] > 0)
+        *reflected = F * microfacet_G1(m, r);
+    if (t[2] < 0)
+        *transmitted = (1 - F) * microfacet_G1(m, -t);
+}
+
+void microfacet_albedo(const struct microfacet *m, float eta, float mu, int n, double *reflected,
+                       double *transmitted) {
+    enum { MOST = 256 };
+    double x[MOST], w[MOST];
+    assert(n <= MOST);
+    gauss_legendre(n, x, w);
+    // u = sin^2(pi x / 2) takes the square roots out of the maps' ends.
+    for (int i = 0; i < n; i++) {
+        w[i] *= 0.5 * M_PI * sin(M_PI * x[i]);
+        x[i] = sqr(sinf((float)(0.5 * M_PI * x[i])));
+    }
+    const vec3 v = v3(safe_sqrt((1 - mu) * (1 + mu)), 0, mu);
+    *reflected = *transmitted = 0;
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) {
+            double r, t;
+            const vec3 h = microfacet_sample(m, v, (struct vec2){(float)x[i], (float)x[j]});
+            facet_shares(m, eta, v, h, &r, &t);
+            *reflected += w[i] * w[j] * r;
+            *transmitted += w[i] * w[j] * t;
+        }
+    }
+}
