@@ -19,8 +19,8 @@ float light_power_infinite(float mean_radiance, float radius) {
 vec3 light_position(const struct transform *to_world, vec3 local, const struct light_scene *scene) {
     double p[3] = {local[0], local[1], local[2]};
     transform_point(to_world, p, p);
-    return v3((float)(p[0] - scene->recentre[0]), (float)(p[1] - scene->recentre[1]),
-              (float)(p[2] - scene->recentre[2]));
+    return v3((float)(p[0] - scene->origin[0]), (float)(p[1] - scene->origin[1]),
+              (float)(p[2] - scene->origin[2]));
 }
 
 bool light_sample_point(vec3 position, vec3 p, spectrum intensity, struct light_sample *s) {

@@ -38,7 +38,6 @@ struct light_scene {
     float radius; // > 0
     double origin[3]; // the point of the file's world that is the origin now; subtract it
     const struct shape *shape; // the area light's shape; else NULL
-    double recentre[3]; // the point of the file's world that is the origin of world space
 };
 
 struct light_type {
