@@ -15,8 +15,8 @@
 #include "subcommand.h"
 
 struct values {
-    const char *scene, *output, *integrator, *sampler, *max_depth, *aovs;
-    int spp, size[2], crop[4], seed, threads;
+    const char *scene, *output, *integrator, *sampler, *aovs;
+    int spp, size[2], crop[4], max_depth, seed, threads;
     bool variance, light_groups, paths, half, lenient, quiet, json;
     struct option_list defines;
 };
@@ -41,8 +41,9 @@ static const struct option_spec options[] = {
      .help = "integrator in place of the scene's"},
     {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
      .help = "sampler in place of the scene's"},
-    {.name = "max-depth", .type = OPTION_TEXT, .offset = AT(max_depth), .argument = "N",
-     .help = "most edges of a path: 1 emitters, 2 direct light; -1: no limit"},
+    {.name = "max-depth", .type = OPTION_INT, .offset = AT(max_depth), .argument = "N", .min = -1,
+     .max = 1000000, .def = "0",
+     .help = "most edges of a path: 1 emitters, 2 direct light; -1: no limit, 0: as the scene says"},
     {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
      .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
     {.name = "aov", .type = OPTION_TEXT, .offset = AT(aovs), .argument = "LIST",
@@ -87,85 +88,86 @@ static void show_progress(void *user, double done, const struct film *film) {
     progress_update(user, done, note);
 }
 
-static void set_attributes(struct image *im, const struct values *v, const char *command,
-                           const struct job_result *r) {
-    char hash[32];
-    snprintf(hash, sizeof hash, "%016" PRIx64, r->scene_hash);
-    image_set_text(im, "relume.command", command);
-    image_set_text(im, "relume.version", RELUME_VERSION);
-    image_set_text(im, "relume.sceneHash", hash);
-    image_set_text(im, "relume.colourSpace", "linear Rec.709");
-    image_set_number(im, "relume.samples", (double)r->render.samples);
-    image_set_number(im, "relume.seed", v->seed);
-    image_set_number(im, "relume.seconds", r->render.seconds);
-}
+// What was measured, for people and as JSON.
+struct outcome {
+    struct render_result render;
+    uint64_t rejected, overflows;
+    double noise; // negative: not measured
+};
 
-static void report(const struct values *v, const struct job_result *r, uint64_t overflows) {
-    const struct render_result *t = &r->render;
-    if (r->rejected)
-        log_warn("%" PRIu64 " samples were not finite and count as black", r->rejected);
+static void report(const struct values *v, const struct outcome *o) {
+    const struct render_result *t = &o->render;
+    if (o->rejected)
+        log_warn("%" PRIu64 " samples were not finite and count as black", o->rejected);
     if (t->truncated)
         log_warn("%" PRIu64 " of %" PRIu64 " paths met the cap of %d events and were cut: the "
                  "picture is too dark by what they would have brought", t->truncated, t->paths,
                  INTEGRATOR_MOST_EVENTS);
-    if (overflows)
-        log_warn("%" PRIu64 " values were beyond the range of half and became infinite", overflows);
+    if (o->overflows)
+        log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
+                 o->overflows);
     if (!v->quiet)
         log_info("%s: %" PRIu64 " samples per pixel in %.2f s, %.2f Mpaths/s, %.2f Mrays/s",
                  v->output, t->samples, t->seconds, (double)t->paths / t->seconds * 1e-6,
                  (double)(t->rays + t->shadow_rays) / t->seconds * 1e-6);
 }
 
-static void report_json(const struct values *v, const struct job_result *r) {
-    const struct render_result *t = &r->render;
+static void report_json(const struct values *v, const struct job *job, const struct outcome *o) {
+    const struct render_result *t = &o->render;
     struct json *j = json_new_object();
     json_add_text(j, "output", v->output);
-    json_add_number(j, "samples", (double)t->samples);
+    json_add_count(j, "samples", (int64_t)t->samples);
     json_add_number(j, "seconds", t->seconds);
-    json_add_number(j, "load_seconds", r->load_seconds);
-    json_add_number(j, "accel_seconds", r->accel_seconds);
-    json_add_number(j, "accel_bytes", (double)r->accel_bytes);
-    json_add_number(j, "peak_bytes", (double)mem_peak());
-    json_add_number(j, "triangles", (double)r->triangles);
-    json_add_number(j, "paths", (double)t->paths);
-    json_add_number(j, "rays", (double)t->rays);
-    json_add_number(j, "shadow_rays", (double)t->shadow_rays);
-    json_add_number(j, "truncated_paths", (double)t->truncated);
-    json_add_number(j, "rejected_samples", (double)r->rejected);
-    if (r->noise >= 0)
-        json_add_number(j, "noise", r->noise);
+    json_add_number(j, "load_seconds", job->load_seconds);
+    json_add_number(j, "accel_seconds", job->world->accel_seconds);
+    json_add_count(j, "accel_bytes", (int64_t)accel_bytes(job->world->accel));
+    json_add_count(j, "peak_bytes", (int64_t)mem_peak());
+    json_add_count(j, "triangles", (int64_t)job->triangles);
+    json_add_count(j, "paths", (int64_t)t->paths);
+    json_add_count(j, "rays", (int64_t)t->rays);
+    json_add_count(j, "shadow_rays", (int64_t)t->shadow_rays);
+    json_add_count(j, "truncated_paths", (int64_t)t->truncated);
+    json_add_count(j, "rejected_samples", (int64_t)o->rejected);
+    if (o->noise >= 0)
+        json_add_number(j, "noise", o->noise);
     json_print(j, false);
     json_destroy(j);
 }
 
-static int write_result(const struct values *v, const char *command, struct job_result *r) {
-    uint64_t overflows = 0;
-    const struct image_exr_options exr = {.half = v->half, .half_overflows = &overflows};
-    set_attributes(&r->image, v, command, r);
-    if (!image_write_exr(v->output, &r->image, &exr))
+static int render_and_write(const struct values *v, const char *command, struct job *job,
+                            struct progress *progress) {
+    struct outcome o;
+    struct image im = {0};
+    const struct image_exr_options exr = {.half = v->half, .half_overflows = &o.overflows};
+    struct film *film = job_render(job, &o.render);
+    progress_end(progress);
+    o.rejected = film_rejected(film);
+    o.noise = film_noise(film);
+    o.overflows = 0;
+    bool written = job_image(job, film, &o.render, &im);
+    film_destroy(film);
+    if (written) {
+        image_set_text(&im, "relume.command", command);
+        image_set_text(&im, "relume.version", RELUME_VERSION);
+        written = image_write_exr(v->output, &im, &exr);
+    }
+    image_finish(&im);
+    if (!written)
         return EXIT_FAILED;
-    report(v, r, overflows);
+    report(v, &o);
     if (v->json)
-        report_json(v, r);
-    return r->render.stopped ? EXIT_UNCONVERGED : EXIT_DONE;
+        report_json(v, job, &o);
+    return o.render.stopped ? EXIT_UNCONVERGED : EXIT_DONE;
 }
 
-static int run(const void *values, const char *command) {
-    const struct values *v = values;
-    struct arena arena = {0};
+static int run_job(const struct values *v, const char *command, const struct scene_define *defines) {
     char temp[4096];
     struct progress progress;
-    int code = EXIT_FAILED;
-    struct job_result result = {0};
-    const struct scene_define *defines = parse_defines(&v->defines, &arena);
-    if (!defines) {
-        code = EXIT_USAGE;
-        goto done;
-    }
+    struct job job;
     if (!file_temp_name(v->output, temp, sizeof temp)) // know now, not after an hour
-        goto done;
+        return EXIT_FAILED;
     progress_begin(&progress, "render", v->quiet);
-    const struct job_options job = {
+    const struct job_options job_options = {
         .scene = v->scene, .spp = v->spp, .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
         .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
         .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
@@ -173,12 +175,18 @@ static int run(const void *values, const char *command) {
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
                     .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],
                     .height = v->size[1]}};
-    const bool rendered = job_run(&job, &result);
-    progress_end(&progress);
-    if (rendered)
-        code = write_result(v, command, &result);
-done:
-    image_finish(&result.image);
+    if (!job_open(&job, &job_options))
+        return EXIT_FAILED;
+    const int code = render_and_write(v, command, &job, &progress);
+    job_close(&job);
+    return code;
+}
+
+static int run(const void *values, const char *command) {
+    const struct values *v = values;
+    struct arena arena = {0};
+    const struct scene_define *defines = parse_defines(&v->defines, &arena);
+    const int code = defines ? run_job(v, command, defines) : EXIT_USAGE;
     arena_finish(&arena);
     return code;
 }

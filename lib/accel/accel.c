@@ -51,6 +51,10 @@ size_t accel_bytes(const struct accel *a) {
     return (size_t)atomic_load(&a->bytes);
 }
 
+void *accel_embree_scene(const struct accel *a) {
+    return a->world;
+}
+
 static void report_embree(void *user, enum RTCError code, const char *text) {
     (void)user;
     log_error("Embree: error %d: %s", (int)code, text);

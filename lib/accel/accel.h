@@ -25,6 +25,8 @@ enum { ACCEL_PACKET = 16 };
 struct accel *accel_create(const struct scene *scene, int threads);
 void accel_destroy(struct accel *a);
 size_t accel_bytes(const struct accel *a); // taken by the acceleration structure
+// The RTCScene behind it, for benchmarks that compare with bare Embree calls.
+void *accel_embree_scene(const struct accel *a);
 const char *accel_version(void);           // "Embree 3.13.5"
 
 // Call once on every thread that traces: sets the floating point mode (denormals are zero).

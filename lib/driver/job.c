@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/job.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "base/mem.h"
 #include "base/thread.h"
-#include "driver/light_groups.h"
 
 enum { DEFAULT_SPP = 64 };
 
@@ -51,7 +50,7 @@ static bool prepare_integrator(const struct job_options *o, struct scene *s,
                                struct film_options *film) {
     struct integrator_wants wants = {0};
     if (o->max_depth)
-        override_int(s->integrator, "max_depth", atoi(o->max_depth));
+        override_int(s->integrator, "max_depth", o->max_depth);
     const struct integrator_type *type = integrator_type_of(s->integrator);
     if (type->prepare && !type->prepare(s->integrator, &wants))
         return false;
@@ -60,68 +59,80 @@ static bool prepare_integrator(const struct job_options *o, struct scene *s,
     return true;
 }
 
-static uint64_t count_triangles(const struct scene *s) {
-    uint64_t n = 0;
-    for (uint32_t i = 0; i < s->shape_count; i++)
-        n += s->shapes[i].mesh.triangle_count;
-    return n;
-}
-
-static bool run(const struct job_options *o, struct scene *s, struct world *w,
-                struct light_groups *groups, struct job_result *r) {
-    struct film_options film_options = {.alpha = s->film.alpha, .variance = o->variance,
-                                        .paths = o->paths};
-    struct filter_sampler filter;
-    const struct sensor_type *sensor = sensor_type_of(s->sensors[0]);
-    if ((o->aovs && !film_aovs_parse(o->aovs, &film_options.aovs)) ||
-        !choose_crop(o, &s->film, &film_options) || !prepare_integrator(o, s, &film_options) ||
-        !sensor->prepare(s->sensors[0], s->film.width, s->film.height, s->centre) ||
-        !filter_sampler_init(&filter, s->filter))
-        return false;
-    if (groups) {
-        film_options.group_count = groups->count;
-        film_options.group_names = groups->names;
-        film_options.group_of_light = groups->of_light;
-    }
-    const struct render_options options = {
+static void set_render_options(struct job *job, const struct job_options *o) {
+    const struct scene *s = job->scene;
+    job->render = (struct render_options){
         .sampler = (const struct sampler_type *)s->sampler->type,
         .spp = (uint32_t)(o->spp ? o->spp : s->sample_count ? s->sample_count : DEFAULT_SPP),
         .seed = o->seed, .replicates = o->variance ? FILM_REPLICATES : 1, .threads = o->threads,
         .stop = o->stop, .progress = o->progress, .user = o->user};
-    struct film *film = film_create(&film_options);
-    render(w, s->sensors[0], s->integrator, &filter, film, &options, &r->render);
-    r->rejected = film_rejected(film);
-    r->noise = film_noise(film);
-    bool done = r->render.samples > 0;
-    if (done)
-        done = film_image(film, &r->image);
-    else
-        log_error("stopped before every pixel had its first sample: there is no picture to write");
-    film_destroy(film);
-    filter_sampler_finish(&filter);
-    return done;
 }
 
-bool job_run(const struct job_options *o, struct job_result *r) {
-    *r = (struct job_result){0};
+static bool prepare(struct job *job, const struct job_options *o) {
+    struct scene *s = job->scene;
+    const struct sensor_type *sensor = sensor_type_of(s->sensors[0]);
+    job->film = (struct film_options){.alpha = s->film.alpha, .variance = o->variance,
+                                      .paths = o->paths};
+    if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
+        !choose_crop(o, &s->film, &job->film) || !prepare_integrator(o, s, &job->film) ||
+        !sensor->prepare(s->sensors[0], s->film.width, s->film.height, s->centre) ||
+        (o->light_groups && !light_groups_init(&job->groups, s)) ||
+        !filter_sampler_init(&job->filter, s->filter))
+        return false;
+    job->film.group_count = job->groups.count;
+    job->film.group_names = job->groups.names;
+    job->film.group_of_light = job->groups.of_light;
+    set_render_options(job, o);
+    return true;
+}
+
+bool job_open(struct job *job, const struct job_options *o) {
+    *job = (struct job){0};
     struct scene_options reading = o->reading;
     reading.registries = job_registries();
     reading.threads = o->threads;
     const double start = time_seconds();
-    struct scene *s = scene_read(o->scene, &reading);
-    struct world *w = s ? world_create(s, o->threads) : NULL;
-    struct light_groups groups = {0};
-    bool done = w && (!o->light_groups || light_groups_init(&groups, s));
-    r->load_seconds = time_seconds() - start;
-    if (done) {
-        r->triangles = count_triangles(s);
-        r->accel_bytes = accel_bytes(w->accel);
-        r->accel_seconds = w->accel_seconds;
-        r->scene_hash = s->hash;
-        done = run(o, s, w, o->light_groups ? &groups : NULL, r);
+    job->scene = scene_read(o->scene, &reading);
+    job->world = job->scene ? world_create(job->scene, o->threads) : NULL;
+    if (!job->world || !prepare(job, o)) {
+        job_close(job);
+        return false;
     }
-    light_groups_finish(&groups);
-    world_destroy(w);
-    scene_destroy(s);
-    return done;
+    job->load_seconds = time_seconds() - start;
+    for (uint32_t i = 0; i < job->scene->shape_count; i++)
+        job->triangles += job->scene->shapes[i].mesh.triangle_count;
+    return true;
+}
+
+void job_close(struct job *job) {
+    filter_sampler_finish(&job->filter);
+    light_groups_finish(&job->groups);
+    world_destroy(job->world);
+    scene_destroy(job->scene);
+    *job = (struct job){0};
+}
+
+struct film *job_render(struct job *job, struct render_result *result) {
+    const struct scene *s = job->scene;
+    struct film *film = film_create(&job->film);
+    render(job->world, s->sensors[0], s->integrator, &job->filter, film, &job->render, result);
+    return film;
+}
+
+bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
+               struct image *im) {
+    char hash[32];
+    if (result->samples == 0) {
+        log_error("stopped before every pixel had its first sample: there is no picture to write");
+        return false;
+    }
+    if (!film_image(film, im))
+        return false;
+    snprintf(hash, sizeof hash, "%016" PRIx64, job->scene->hash);
+    image_set_text(im, "relume.sceneHash", hash);
+    image_set_text(im, "relume.colourSpace", "linear Rec.709");
+    image_set_number(im, "relume.samples", (double)result->samples);
+    image_set_number(im, "relume.seed", job->render.seed);
+    image_set_number(im, "relume.seconds", result->seconds);
+    return true;
 }

@@ -2,14 +2,15 @@
 // A picture from a scene file: everything between the command line and the finished image.
 #pragma once
 
+#include "driver/light_groups.h"
 #include "driver/render.h"
 
 struct job_options {
     const char *scene;
-    struct scene_options reading; // registries are filled in by job_run
+    struct scene_options reading; // registries are filled in by job_open
     int spp;                      // 0: what the scene asks for, else 64
     int crop[4];                  // x0, y0, x1, y1; all 0: the scene's
-    const char *max_depth;        // number as text, or NULL: the scene's
+    int max_depth;                // 0: the scene's
     uint32_t seed;
     int threads;
     const char *aovs;             // "albedo,N" or NULL
@@ -19,19 +20,27 @@ struct job_options {
     void *user;
 };
 
-struct job_result {
-    struct image image;
-    struct render_result render;
-    uint64_t rejected;      // samples that were NaN or infinite
-    double noise;           // film_noise, negative: not measured
-    double load_seconds, accel_seconds, first_pixel_seconds;
+// A scene that is ready to be rendered, once or many times.
+struct job {
+    struct scene *scene;
+    struct world *world;
+    struct light_groups groups;
+    struct filter_sampler filter;
+    struct film_options film;
+    struct render_options render;
+    double load_seconds; // reading and building
     uint64_t triangles;
-    size_t accel_bytes;
-    uint64_t scene_hash;
 };
 
 // The registries of everything a scene may name.
 struct scene_registries job_registries(void);
 
-// Reads, builds, renders. false after an error message. image_finish(&result->image) when done.
-bool job_run(const struct job_options *options, struct job_result *result);
+// Reads and builds. false after an error message, with nothing to close.
+bool job_open(struct job *job, const struct job_options *options);
+void job_close(struct job *job);
+// Traces a picture with job->render; film_destroy it when done.
+struct film *job_render(struct job *job, struct render_result *result);
+
+// The picture with its layers, and what there is to say about it. false after an error message.
+bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
+               struct image *im);
