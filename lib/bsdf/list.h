@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Materials, one a line; each is bsdf/NAME.c.
+X(blendbsdf)
+X(bumpmap)
 X(conductor)
 X(dielectric)
 X(diffuse)
 X(mask)
+X(normalmap)
 X(null)
 X(plastic)
 X(roughconductor)
+X(roughdielectric)
+X(roughplastic)
+X(thindielectric)
 X(twosided)

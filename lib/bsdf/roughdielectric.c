@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rough boundary between two dielectrics (Walter et al. 2007, Microfacet Models for Refraction
+// through Rough Surfaces): every facet reflects and refracts as glass does. The interior is the
+// side opposite to the normal.
+//
+// With h = wo + eta wi (unnormalised, eta of wi's side over wo's), refraction has the Jacobian
+// eta^2 |<wi, h>| / |h|^2 of unit h, and |h| = |eta cos_t - cos_o| = |eta^2 - 1| / (eta cos_t +
+// cos_o), which does not cancel as eta approaches 1.
+#include "bsdf/roughness.h"
+#include "bsdf/smooth.h"
+#include "math/fresnel.h"
+
+struct roughdielectric {
+    struct dielectric_index index;
+    struct roughness roughness;
+    struct texture_ref reflectance, transmittance;
+};
+
+struct rough_data {
+    struct closure head;
+    struct microfacet facets;
+    vec3 wo;       // above the surface: all is mirrored when it was below
+    bool mirrored;
+    float eta;     // of the far side over wo's
+    float inv_area; // 1 / sigma(wo)
+    spectrum reflectance, transmittance; // the latter includes the radiance's scaling
+};
+
+static const struct param params[] = {
+    DIELECTRIC_INDEX_PARAMS(struct roughdielectric, index, "bk7"),
+    ROUGHNESS_PARAMS(struct roughdielectric, roughness),
+    {"specular_reflectance", PARAM_TEXTURE, offsetof(struct roughdielectric, reflectance),
+     .def = "1", .max = 1, .unit = "", .help = "factor on the reflection"},
+    {"specular_transmittance", PARAM_TEXTURE, offsetof(struct roughdielectric, transmittance),
+     .def = "1", .max = 1, .unit = "", .help = "factor on the refraction"},
+    PARAM_END,
+};
+
+// Refraction then spreads less than directions in float can tell apart: the smooth boundary.
+#define SPREAD_MIN 2e-6f
+
+static bool prepare(struct object *self, struct arena *arena) {
+    const struct roughdielectric *r = self->data;
+    (void)arena;
+    return roughness_prepare(&r->roughness, self);
+}
+
+static uint32_t lobes(const void *data) {
+    const struct roughdielectric *self = data;
+    const float eta = self->index.int_ior / self->index.ext_ior;
+    if (eta == 1)
+        return dielectric_lobes(eta);
+    const uint32_t nearly_equal = fabsf(eta - 1) < 0.05f ? LOBE_SPECULAR : 0;
+    return roughness_lobes(&self->roughness) | nearly_equal | LOBE_REFLECTION | LOBE_TRANSMISSION;
+}
+
+static const struct closure *resolve(const void *data, const struct bsdf_point *point, vec3 wo,
+                                     struct closure_stack *stack) {
+    const struct roughdielectric *self = data;
+    const float eta = self->index.int_ior / self->index.ext_ior;
+    const spectrum R = texture_eval(&self->reflectance, &point->at);
+    const spectrum T = texture_eval(&self->transmittance, &point->at);
+    struct microfacet facets;
+    if (!roughness_at(&self->roughness, &point->at, &facets) ||
+        fmaxf(facets.alpha_u, facets.alpha_v) * fabsf(eta - 1) < SPREAD_MIN)
+        return dielectric_closure(eta, R, T, wo, stack);
+    if (cos_theta(wo) == 0)
+        return NULL;
+    struct rough_data *c = closure_alloc(stack, &bsdf_roughdielectric, sizeof *c,
+                                         LOBE_GLOSSY | LOBE_REFLECTION | LOBE_TRANSMISSION);
+    c->mirrored = cos_theta(wo) < 0;
+    c->wo = v3(wo[0], wo[1], fabsf(wo[2]));
+    c->facets = facets;
+    c->eta = c->mirrored ? 1 / eta : eta;
+    c->inv_area = 1 / microfacet_area(&facets, c->wo);
+    c->reflectance = R;
+    c->transmittance = T / (c->eta * c->eta);
+    return &c->head;
+}
+
+// Density of reflection at the facet h that reflects the share F.
+static float pdf_reflected(const struct rough_data *c, vec3 h, float F) {
+    return 0.25f * F * microfacet_D(&c->facets, h) * c->inv_area;
+}
+
+// Density of refraction at the facet h under cosines of both sides.
+static float pdf_refracted(const struct rough_data *c, vec3 h, float F, float cos_o, float cos_t) {
+    const float q = c->eta * cos_t, d = (c->eta - 1) * (c->eta + 1);
+    return (1 - F) * microfacet_D(&c->facets, h) * c->inv_area * cos_o * c->eta * q *
+           sqr((q + cos_o) / d);
+}
+
+// The unit facet normal that refracts wo to wi, which is below; false: there is none.
+static bool refracting_facet(const struct rough_data *c, vec3 wi, vec3 *h) {
+    *h = normalize(c->wo + c->eta * wi);
+    if ((*h)[2] < 0)
+        *h = -*h;
+    return dot(c->wo, *h) > 0 && dot(wi, *h) < 0;
+}
+
+static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
+    const struct rough_data *c = (const void *)closure;
+    float cos_t;
+    if (c->mirrored)
+        wi[2] = -wi[2];
+    *pdf_sa = 0;
+    if (wi[2] > 0) {
+        const vec3 h = normalize(c->wo + wi);
+        *pdf_sa = pdf_reflected(c, h, fresnel_dielectric(dot(c->wo, h), c->eta, &cos_t));
+        return c->reflectance * (*pdf_sa * microfacet_G1(&c->facets, wi));
+    }
+    vec3 h;
+    if (!(wi[2] < 0) || !refracting_facet(c, wi, &h))
+        return spectrum_grey(0);
+    const float cos_o = dot(c->wo, h);
+    const float F = fresnel_dielectric(cos_o, c->eta, &cos_t);
+    *pdf_sa = pdf_refracted(c, h, F, cos_o, cos_t);
+    return c->transmittance * (*pdf_sa * microfacet_G1(&c->facets, -wi));
+}
+
+static bool sample(const struct closure *closure, float u1, struct vec2 u2,
+                   struct bsdf_sample *s) {
+    const struct rough_data *c = (const void *)closure;
+    const vec3 h = microfacet_sample(&c->facets, c->wo, u2);
+    const float cos_o = dot(c->wo, h);
+    if (!(cos_o > 0))
+        return false;
+    float cos_t;
+    const float F = fresnel_dielectric(cos_o, c->eta, &cos_t);
+    if (u1 < F) {
+        s->wi = normalize(2 * cos_o * h - c->wo);
+        s->pdf_sa = pdf_reflected(c, h, F);
+        s->weight = c->reflectance;
+        s->eta = 1;
+        s->lobe = LOBE_GLOSSY | LOBE_REFLECTION;
+    } else {
+        s->wi = normalize((cos_o / c->eta - cos_t) * h - c->wo / c->eta);
+        s->pdf_sa = pdf_refracted(c, h, F, cos_o, cos_t);
+        s->weight = c->transmittance;
+        s->eta = c->eta;
+        s->lobe = LOBE_GLOSSY | LOBE_TRANSMISSION;
+    }
+    if ((s->wi[2] > 0) != (u1 < F) || !(s->pdf_sa > 0))
+        return false; // the light met another facet
+    s->weight *= microfacet_G1(&c->facets, u1 < F ? s->wi : -s->wi);
+    if (c->mirrored)
+        s->wi[2] = -s->wi[2];
+    return true;
+}
+
+static spectrum albedo(const struct closure *closure) {
+    const struct rough_data *c = (const void *)closure;
+    float cos_t;
+    const float F = fresnel_dielectric(cos_theta(c->wo), c->eta, &cos_t);
+    return F * c->reflectance + (1 - F) * c->eta * c->eta * c->transmittance;
+}
+
+static spectrum null_transmittance(const void *data, const struct bsdf_point *point, vec3 wo) {
+    const struct roughdielectric *self = data;
+    (void)wo;
+    if (self->index.int_ior != self->index.ext_ior)
+        return spectrum_grey(0);
+    return texture_eval(&self->transmittance, &point->at);
+}
+
+const struct bsdf_type bsdf_roughdielectric = {
+    .entry = {.name = "roughdielectric", .help = "rough boundary of glass (Walter et al. 2007)",
+              .params = params, .size = sizeof(struct roughdielectric)},
+    .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
+    .albedo = albedo, .null_transmittance = null_transmittance,
+};

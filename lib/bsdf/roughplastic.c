@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Diffuse base under a rough dielectric coat, as Mitsuba 3 defines it: the coat reflects by
+// microfacets, and the base is seen through the transmittances T of the coat for both directions,
+//
+//     f = F D G / (4 cos_o cos_i) + base(diffuse) T(cos_o) T(cos_i) / pi
+//
+// T is what single scattering transmits from outside, tabulated before rendering.
+#include "bsdf/roughness.h"
+#include "bsdf/smooth.h"
+#include "math/fresnel.h"
+#include "math/quadrature.h"
+#include "math/warp.h"
+
+enum { TABLE = 128, NODES_OUTSIDE = 32, NODES_INSIDE = 48, DIRECTIONS = 24 };
+
+struct roughplastic {
+    struct dielectric_index index;
+    struct texture_ref diffuse, specular;
+    bool nonlinear;
+    int distribution;
+    float alpha;
+    // made by prepare
+    struct plastic_coat coat;     // its fresnel_in counts the rough coat where there is one
+    struct microfacet facets;
+    bool smooth;
+    float mean_transmitted;       // 2 * integral of T(c) c dc
+    float transmitted[TABLE + 1]; // T at cosine (i / TABLE)^2
+    float reflected[TABLE + 1];
+};
+
+struct rough_data {
+    struct closure head;
+    const struct roughplastic *self;
+    vec3 wo;
+    float quarter_area; // 1 / (4 sigma(wo))
+    float p_specular;
+    spectrum specular, diffuse; // the latter: f / T(wi), times pi
+    spectrum albedo;
+};
+
+static const struct param params[] = {
+    {"diffuse_reflectance", PARAM_TEXTURE, offsetof(struct roughplastic, diffuse), .def = "0.5",
+     .max = 1, .unit = "", .help = "reflectance of the base"},
+    {"nonlinear", PARAM_BOOL, offsetof(struct roughplastic, nonlinear), .def = "false",
+     .unit = "", .help = "colours shift by scattering inside"},
+    DIELECTRIC_INDEX_PARAMS(struct roughplastic, index, "polypropylene"),
+    {"specular_reflectance", PARAM_TEXTURE, offsetof(struct roughplastic, specular), .def = "1",
+     .max = 1, .unit = "", .help = "factor on the coat's reflection"},
+    {"distribution", PARAM_CHOICE, offsetof(struct roughplastic, distribution),
+     .def = "beckmann", .unit = "", .help = "distribution of facet normals",
+     .choices = roughness_distributions},
+    {"alpha", PARAM_FLOAT, offsetof(struct roughplastic, alpha), .def = "0.1", .max = 1000,
+     .unit = "", .help = "roughness; below 1e-4 the coat is smooth"},
+    {"sample_visible", PARAM_IGNORED, 0, .unit = "", .help = "visible normals are always sampled"},
+    PARAM_END,
+};
+
+// Fills the tables of the coat's outside.
+static void tabulate_outside(struct roughplastic *self) {
+    for (int i = 0; i <= TABLE; i++) {
+        const float s = (float)i / TABLE;
+        double r, t;
+        microfacet_albedo(&self->facets, self->coat.eta, fmaxf(s * s, 1e-6f), NODES_OUTSIDE, &r,
+                          &t);
+        self->reflected[i] = (float)r;
+        self->transmitted[i] = (float)t;
+    }
+}
+
+static float lookup(const float *table, float cosine) {
+    const float x = sqrtf(cosine) * TABLE;
+    const int i = (int)fminf(x, TABLE - 1);
+    return lerpf(x - (float)i, table[i], table[i + 1]);
+}
+
+// Means over diffuse light of what the coat transmits from outside and reflects inside.
+static void integrate_directions(struct roughplastic *self) {
+    double c[DIRECTIONS], w[DIRECTIONS], out = 0, in = 0;
+    gauss_legendre(DIRECTIONS, c, w);
+    for (int i = 0; i < DIRECTIONS; i++) {
+        double r, t;
+        microfacet_albedo(&self->facets, 1 / self->coat.eta, (float)c[i], NODES_INSIDE, &r, &t);
+        in += 2 * w[i] * c[i] * r;
+        out += 2 * w[i] * c[i] * lookup(self->transmitted, (float)c[i]);
+    }
+    self->coat.fresnel_in = (float)in;
+    self->mean_transmitted = (float)out;
+}
+
+static bool prepare(struct object *object, struct arena *arena) {
+    struct roughplastic *self = object->data;
+    (void)arena;
+    self->smooth = self->alpha < MICROFACET_ALPHA_MIN;
+    self->facets = microfacet_make((enum microfacet_type)self->distribution, self->alpha,
+                                   self->alpha);
+    const float eta = self->index.int_ior / self->index.ext_ior;
+    self->coat = (struct plastic_coat){eta, (float)fresnel_dielectric_average(eta),
+                                       (float)fresnel_dielectric_average(1.0 / eta),
+                                       self->nonlinear};
+    if (!self->smooth) {
+        tabulate_outside(self);
+        integrate_directions(self);
+    }
+    return true;
+}
+
+static uint32_t lobes(const void *data) {
+    const struct roughplastic *self = data;
+    return (self->smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_DIFFUSE | LOBE_REFLECTION;
+}
+
+static const struct closure *resolve(const void *data, const struct bsdf_point *point, vec3 wo,
+                                     struct closure_stack *stack) {
+    const struct roughplastic *self = data;
+    const float cos_o = cos_theta(wo);
+    if (!(cos_o > 0))
+        return NULL;
+    const spectrum diffuse = texture_eval(&self->diffuse, &point->at);
+    const spectrum specular = texture_eval(&self->specular, &point->at);
+    if (self->smooth)
+        return plastic_closure(&self->coat, diffuse, specular, wo, stack);
+    struct rough_data *c = closure_alloc(stack, &bsdf_roughplastic, sizeof *c,
+                                         LOBE_GLOSSY | LOBE_DIFFUSE | LOBE_REFLECTION);
+    c->self = self;
+    c->wo = wo;
+    c->quarter_area = 0.25f / microfacet_area(&self->facets, wo);
+    c->specular = specular;
+    c->diffuse = plastic_base(diffuse, self->coat.fresnel_in, self->nonlinear, self->coat.eta) *
+                 lookup(self->transmitted, cos_o);
+    const spectrum s = specular * lookup(self->reflected, cos_o);
+    const spectrum d = c->diffuse * self->mean_transmitted;
+    const float sum = spectrum_mean(s) + spectrum_mean(d);
+    c->p_specular = sum > 0 ? spectrum_mean(s) / sum : 1;
+    c->albedo = s + d;
+    return &c->head;
+}
+
+static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
+    const struct rough_data *c = (const void *)closure;
+    const float cos_i = cos_theta(wi);
+    if (!(cos_i > 0)) {
+        *pdf_sa = 0;
+        return spectrum_grey(0);
+    }
+    const struct roughplastic *self = c->self;
+    const vec3 h = normalize(c->wo + wi);
+    const float pdf_specular = microfacet_D(&self->facets, h) * c->quarter_area;
+    float cos_t;
+    const float F = fresnel_dielectric(dot(c->wo, h), self->coat.eta, &cos_t);
+    const float diffuse = cos_i * INV_PI;
+    *pdf_sa = lerpf(c->p_specular, diffuse, pdf_specular);
+    return c->specular * (F * pdf_specular * microfacet_G1(&self->facets, wi)) +
+           c->diffuse * (lookup(self->transmitted, cos_i) * diffuse);
+}
+
+static bool sample(const struct closure *closure, float u1, struct vec2 u2,
+                   struct bsdf_sample *s) {
+    const struct rough_data *c = (const void *)closure;
+    const bool specular = u1 < c->p_specular;
+    if (specular)
+        s->wi = normalize(reflect(c->wo, microfacet_sample(&c->self->facets, c->wo, u2)));
+    else
+        s->wi = warp_cosine_hemisphere(u2);
+    const spectrum f = eval(closure, s->wi, &s->pdf_sa);
+    if (!(s->pdf_sa > 0))
+        return false;
+    s->weight = f / s->pdf_sa;
+    s->eta = 1;
+    s->lobe = (specular ? LOBE_GLOSSY : LOBE_DIFFUSE) | LOBE_REFLECTION;
+    return true;
+}
+
+static spectrum albedo(const struct closure *closure) {
+    return ((const struct rough_data *)(const void *)closure)->albedo;
+}
+
+const struct bsdf_type bsdf_roughplastic = {
+    .entry = {.name = "roughplastic", .help = "diffuse base under a rough coat",
+              .params = params, .size = sizeof(struct roughplastic)},
+    .claims = CLAIM_RECIPROCAL,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
+    .albedo = albedo,
+};
