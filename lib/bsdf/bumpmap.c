@@ -12,7 +12,7 @@ struct bumpmap {
 
 static const struct param params[] = {
     {"texture", PARAM_TEXTURE_SCALAR, offsetof(struct bumpmap, height), .unit = "m",
-     .help = "height above the surface"},
+     .help = "height above the surface", .aka = "arbitrary"},
     {"bsdf", PARAM_BSDF, offsetof(struct bumpmap, child), .unit = "",
      .help = "material of the surface"},
     {"scale", PARAM_FLOAT, offsetof(struct bumpmap, scale), .def = "1", .unit = "",
