@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// The elements of Mitsuba's scene language, and what versions before 2 called them.
+#include <ctype.h>
+#include <string.h>
+
+#include "scene/reader.h"
+
+static const struct tag {
+    const char *name;
+    enum tag_kind kind;
+    const char *attributes; // allowed ones, each followed by a blank; '!' before required ones
+    const char *was;        // its name in old versions
+} tags[] = {
+    {"scene", TAG_OBJECT, "version type id "},
+    {"bsdf", TAG_OBJECT, "!type id name "},
+    {"emitter", TAG_OBJECT, "!type id name ", "luminaire"},
+    {"shape", TAG_OBJECT, "!type id name "},
+    {"texture", TAG_OBJECT, "!type id name "},
+    {"sensor", TAG_OBJECT, "!type id name ", "camera"},
+    {"film", TAG_OBJECT, "!type id name "},
+    {"sampler", TAG_OBJECT, "!type id name "},
+    {"rfilter", TAG_OBJECT, "!type id name "},
+    {"integrator", TAG_OBJECT, "!type id name "},
+    {"medium", TAG_OBJECT, "!type id name "},
+    {"phase", TAG_OBJECT, "!type id name "},
+    {"volume", TAG_OBJECT, "!type id name "},
+    {"subsurface", TAG_OBJECT, "!type id name "},
+    {"boolean", TAG_VALUE, "!name !value "},
+    {"integer", TAG_VALUE, "!name !value "},
+    {"float", TAG_VALUE, "!name !value "},
+    {"string", TAG_VALUE, "!name !value "},
+    {"point", TAG_VALUE, "!name value x y z "},
+    {"vector", TAG_VALUE, "!name value x y z "},
+    {"rgb", TAG_VALUE, "!name !value intent "},
+    {"srgb", TAG_VALUE, "!name !value intent "},
+    {"spectrum", TAG_VALUE, "!name value filename type id intent "},
+    {"blackbody", TAG_VALUE, "!name !temperature scale "},
+    {"transform", TAG_VALUE, "!name "},
+    {"translate", TAG_VALUE, "value x y z "},
+    {"rotate", TAG_VALUE, "value x y z !angle "},
+    {"scale", TAG_VALUE, "value x y z "},
+    {"lookat", TAG_VALUE, "!origin !target up ", "lookAt"},
+    {"matrix", TAG_VALUE, "!value "},
+    {"ref", TAG_REF, "!id name "},
+    {"include", TAG_STRUCTURE, "!filename name "},
+    {"default", TAG_STRUCTURE, "!name !value "},
+    {"path", TAG_STRUCTURE, "!value "},
+    {"alias", TAG_STRUCTURE, "!id !as "},
+    {"mode", TAG_SKIPPED, "type "},
+    {"hide", TAG_SKIPPED, NULL},
+};
+
+enum { TAGS = sizeof tags / sizeof *tags };
+
+static const struct tag *find(const char *name) {
+    for (int i = 0; i < TAGS; i++)
+        if (strcmp(tags[i].name, name) == 0)
+            return &tags[i];
+    return NULL;
+}
+
+enum tag_kind tag_kind(const struct xml_node *node) {
+    const struct tag *t = find(node->tag);
+    if (t && t->kind == TAG_VALUE && strcmp(node->tag, "spectrum") == 0 && xml_get(node, "type"))
+        return TAG_OBJECT;
+    return t ? t->kind : TAG_UNKNOWN;
+}
+
+const char *tag_nearest(const char *tag) {
+    const char *nearest = NULL;
+    int best = 1 << 20;
+    for (int i = 0; i < TAGS; i++) {
+        const int d = edit_distance(tag, tags[i].name);
+        if (d < best && 3 * d <= (int)strlen(tags[i].name) + 2) {
+            best = d;
+            nearest = tags[i].name;
+        }
+    }
+    return nearest;
+}
+
+// "intIOR" -> "int_ior", "toWorld" -> "to_world": as Mitsuba 3 upgrades old files.
+static const char *snake_case(const char *name, struct arena *arena) {
+    const size_t n = strlen(name);
+    char *out = arena_alloc(arena, 2 * n + 1);
+    size_t k = 0;
+    for (size_t i = 0; i < n; i++) {
+        const bool upper = isupper((unsigned char)name[i]);
+        if (upper && i > 0 && islower((unsigned char)name[i - 1]))
+            out[k++] = '_';
+        out[k++] = (char)tolower((unsigned char)name[i]);
+    }
+    out[k] = '\0';
+    return out;
+}
+
+static void upgrade(struct reader *r, struct xml_node *node) {
+    for (int i = 0; i < TAGS; i++)
+        if (tags[i].was && strcmp(tags[i].was, node->tag) == 0)
+            node->tag = tags[i].name;
+    const char *name = xml_get(node, "name");
+    if (name && strcmp(node->tag, "default") != 0)
+        xml_set(node, "name", snake_case(name, r->arena), r->arena);
+}
+
+// Whether `name` is in a list of blank-separated words, a '!' before it disregarded.
+static bool listed(const char *list, const char *name) {
+    const size_t n = strlen(name);
+    for (const char *word = list; *word; word = strchr(word, ' ') + 1) {
+        const char *start = *word == '!' ? word + 1 : word;
+        if (strncmp(start, name, n) == 0 && start[n] == ' ')
+            return true;
+    }
+    return false;
+}
+
+static bool check_required(const struct xml_node *node, const char *list) {
+    for (const char *word = list; *word; word = strchr(word, ' ') + 1) {
+        char name[16];
+        const size_t n = (size_t)(strchr(word, ' ') - word) - 1;
+        if (*word != '!')
+            continue;
+        memcpy(name, word + 1, n);
+        name[n] = '\0';
+        if (!xml_get(node, name)) {
+            log_error_at(node->at, "<%s> lacks the attribute \"%s\"", node->tag, name);
+            return false;
+        }
+    }
+    return true;
+}
+
+// The four parameters by which old versions placed textures, as the transform they mean.
+bool dialect_upgrade_uv(struct reader *r, struct xml_node *node) {
+    const char *const names[4] = {"uoffset", "voffset", "uscale", "vscale"};
+    double v[4] = {0, 0, 1, 1};
+    bool found = false;
+    struct xml_node **link = &node->first, *last = NULL;
+    while (*link) {
+        struct xml_node *child = *link;
+        const char *name = xml_get(child, "name");
+        int k = 0;
+        while (k < 4 && !(name && strcmp(name, names[k]) == 0))
+            k++;
+        if (k == 4) {
+            last = child;
+            link = &child->next;
+            continue;
+        }
+        if (!value_number(child, &v[k]))
+            return false;
+        found = true;
+        *link = child->next;
+    }
+    node->last = last;
+    if (!found)
+        return true;
+    struct xml_node *transform = xml_new("transform", node->at, r->arena);
+    struct xml_node *matrix = xml_new("matrix", node->at, r->arena);
+    xml_set(transform, "name", "to_uv", r->arena);
+    xml_set(matrix, "value", // scale * translate, as Mitsuba 3 upgrades it
+            arena_printf(r->arena, "%.17g 0 0 %.17g 0 %.17g 0 %.17g 0 0 1 0 0 0 0 1", v[2],
+                         v[2] * v[0], v[3], v[3] * v[1]), r->arena);
+    xml_append(transform, matrix);
+    xml_append(node, transform);
+    return true;
+}
+
+bool dialect_check(struct reader *r, struct xml_node *node) {
+    if (node->old)
+        upgrade(r, node);
+    const struct tag *t = find(node->tag);
+    if (!t) {
+        const char *nearest = tag_nearest(node->tag);
+        log_error_at(node->at, "<%s> is not an element of a scene%s%s%s", node->tag,
+                     nearest ? "; did you mean <" : "", nearest ? nearest : "", nearest ? ">?" : "");
+        return false;
+    }
+    if (!t->attributes)
+        return true;
+    for (int i = 0; i < node->attribute_count; i++)
+        if (!listed(t->attributes, node->attributes[i].name)) {
+            log_error_at(node->at, "<%s> has no attribute \"%s\"; it may have: %s", node->tag,
+                         node->attributes[i].name, t->attributes);
+            return false;
+        }
+    return check_required(node, t->attributes);
+}

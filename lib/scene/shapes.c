@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes, groups of shapes and their instances, and the lights that stand in shapes.
+#include <string.h>
+
+#include "scene/reader.h"
+
+struct shape_data {
+    const char *filename, *shape_name;
+    int shape_index;
+    bool face_normals, flip_normals, flip_tex_coords;
+    struct transform to_world;
+    vec3 point; // read again in double by read_point
+    float radius;
+};
+
+#define FIELD(name) offsetof(struct shape_data, name)
+#define COMMON_PARAMS                                                                              \
+    {"to_world", PARAM_TRANSFORM, FIELD(to_world), .def = "", .help = "object to world"},          \
+        {"flip_normals", PARAM_BOOL, FIELD(flip_normals), .def = "false",                          \
+         .help = "turn the normals round"}
+#define MESH_PARAMS(flip)                                                                          \
+    COMMON_PARAMS,                                                                                 \
+        {"filename", PARAM_FILE, FIELD(filename), .help = "the mesh"},                             \
+        {"face_normals", PARAM_BOOL, FIELD(face_normals), .def = "false",                          \
+         .help = "flat triangles even where the file has normals"},                                \
+        {"flip_tex_coords", PARAM_BOOL, FIELD(flip_tex_coords), .def = flip, .help = "v -> 1 - v"}, \
+        {"shape_index", PARAM_INT, FIELD(shape_index), .def = "0", .min = 0, .max = 1e6,           \
+         .help = "which mesh of a file with several"},                                             \
+        {"shape_name", PARAM_STRING, FIELD(shape_name), .optional = true,                          \
+         .help = "only this group of an OBJ file"},                                                \
+        {"max_smooth_angle", PARAM_IGNORED}, {"collapse", PARAM_IGNORED},                          \
+        {"srgb", PARAM_IGNORED}, PARAM_END
+
+static const struct param obj_params[] = {MESH_PARAMS("true")};
+static const struct param mesh_params[] = {MESH_PARAMS("false")};
+static const struct param plain_params[] = {COMMON_PARAMS, PARAM_END};
+static const struct param sphere_params[] = {
+    COMMON_PARAMS,
+    {"center", PARAM_POINT, FIELD(point), .def = "0 0 0", .unit = "m", .help = "its centre"},
+    {"radius", PARAM_FLOAT, FIELD(radius), .def = "1", .min = 1e-30, .max = 1e30, .unit = "m",
+     .help = "its radius"},
+    PARAM_END,
+};
+static const struct param cylinder_params[] = {
+    COMMON_PARAMS,
+    {"p0", PARAM_POINT, FIELD(point), .def = "0 0 0", .unit = "m", .help = "where it begins"},
+    {"p1", PARAM_POINT, FIELD(point), .def = "0 0 1", .unit = "m", .help = "where it ends"},
+    {"radius", PARAM_FLOAT, FIELD(radius), .def = "1", .min = 1e-30, .max = 1e30, .unit = "m",
+     .help = "its radius"},
+    PARAM_END,
+};
+static const struct param group_params[] = {PARAM_END};
+
+static const struct entry shape_types[] = {
+    {"rectangle", "[-1,1]^2 at z = 0", NULL, plain_params, sizeof(struct shape_data)},
+    {"cube", "[-1,1]^3", NULL, plain_params, sizeof(struct shape_data)},
+    {"sphere", "centre and radius", NULL, sphere_params, sizeof(struct shape_data)},
+    {"disk", "radius 1 at z = 0", NULL, plain_params, sizeof(struct shape_data)},
+    {"cylinder", "from p0 to p1, open", NULL, cylinder_params, sizeof(struct shape_data)},
+    {"shapegroup", "shapes for instances", NULL, group_params, sizeof(struct shape_data)},
+    {"instance", "a shapegroup, placed", NULL, plain_params, sizeof(struct shape_data)},
+    {"obj", "", NULL, obj_params, sizeof(struct shape_data)},
+    {"mesh", "any mesh file", NULL, mesh_params, sizeof(struct shape_data)},
+};
+static const struct entry *const shape_entries[] = {
+    &shape_types[0], &shape_types[1], &shape_types[2], &shape_types[3], &shape_types[4],
+    &shape_types[5], &shape_types[6], &shape_types[7], NULL};
+static const struct registry shape_registry = {"shape", shape_entries};
+
+enum { RECTANGLE, CUBE, SPHERE, DISK, CYLINDER, GROUP, INSTANCE, OBJ, MESH };
+
+// ---- what stands in a shape -----------------------------------------------------------------
+
+struct contents {
+    const struct object *bsdf;
+    struct xml_node *emitter;
+    struct id_entry *emitter_entry;
+    uint32_t group; // of an instance
+};
+
+static bool group_read(struct reader *r, struct xml_node *node, struct id_entry *entry,
+                       uint32_t *group);
+
+static bool refuse(const struct xml_node *child, const struct xml_node *target) {
+    if (strcmp(target->tag, "medium") == 0 || strcmp(target->tag, "subsurface") == 0)
+        log_error_at(child->at, "participating media (<%s>) are not supported yet", target->tag);
+    else
+        log_error_at(child->at, "a <%s> cannot stand in a shape", target->tag);
+    return false;
+}
+
+static bool shape_child(struct reader *r, struct xml_node *child, struct xml_node *target,
+                        struct id_entry *entry, void *ctx) {
+    struct contents *c = ctx;
+    if (strcmp(target->tag, "bsdf") == 0) {
+        if (c->bsdf) {
+            log_error_at(child->at, "a second bsdf in one shape");
+            return false;
+        }
+        c->bsdf = object_shared(r, r->options->registries.bsdfs, &r->bsdfs, target, entry);
+        return c->bsdf != NULL;
+    }
+    if (strcmp(target->tag, "emitter") != 0)
+        return refuse(child, target);
+    if (c->emitter) {
+        log_error_at(child->at, "a second emitter in one shape");
+        return false;
+    }
+    c->emitter = target;
+    if (entry)
+        entry->state = ID_DONE; // it has a shape: not an emitter of its own
+    return true;
+}
+
+static bool instance_child(struct reader *r, struct xml_node *child, struct xml_node *target,
+                           struct id_entry *entry, void *ctx) {
+    struct contents *c = ctx;
+    if (strcmp(target->tag, "shape") != 0 ||
+        strcmp(xml_get(target, "type"), "shapegroup") != 0 || c->group != SCENE_NONE) {
+        log_error_at(child->at, "an instance holds exactly one shapegroup");
+        return false;
+    }
+    return group_read(r, target, entry, &c->group);
+}
+
+// Material of shapes that name none: diffuse, black where the shape is a light (as Mitsuba 3).
+static const struct object *default_bsdf(struct reader *r, bool emits, struct where at) {
+    if (!r->default_bsdf[emits]) {
+        struct xml_node *node = xml_new("bsdf", at, r->arena);
+        xml_set(node, "type", "diffuse", r->arena);
+        if (emits) {
+            struct xml_node *black = xml_new("float", at, r->arena);
+            xml_set(black, "name", "reflectance", r->arena);
+            xml_set(black, "value", "0", r->arena);
+            xml_append(node, black);
+        }
+        r->default_bsdf[emits] =
+            object_shared(r, r->options->registries.bsdfs, &r->bsdfs, node, NULL);
+    }
+    return r->default_bsdf[emits];
+}
+
+// ---- lights ---------------------------------------------------------------------------------
+
+const char *node_take_value(struct reader *r, struct xml_node *node, const char *name) {
+    const char *key = arena_printf(r->arena, "taken %s", name); // no attribute of a file has blanks
+    struct xml_node *previous = NULL;
+    for (struct xml_node *c = node->first; c; previous = c, c = c->next) {
+        const char *child_name = xml_get(c, "name");
+        if (tag_kind(c) != TAG_VALUE || !child_name || strcmp(child_name, name) != 0)
+            continue;
+        if (previous)
+            previous->next = c->next;
+        else
+            node->first = c->next;
+        if (node->last == c)
+            node->last = previous;
+        xml_set(node, key, xml_get(c, "value"), r->arena);
+        break;
+    }
+    return xml_get(node, key);
+}
+
+bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape) {
+    const char *group = node_take_value(r, node, "group");
+    struct object *o = object_make(r, r->options->registries.lights, node, NULL, NULL);
+    if (!o)
+        return false;
+    struct scene_light *light = LIST_ADD(&r->lights, struct scene_light);
+    const char *shape_name =
+        shape != SCENE_NONE ? LIST_AT(&r->shapes, struct shape, shape).name : "";
+    light->object = o;
+    light->shape = shape;
+    light->group = group;
+    light->name = o->id && shape == SCENE_NONE ? o->id
+                  : *shape_name               ? shape_name
+                  : o->id                     ? o->id
+                  : arena_printf(r->arena, "%s.%zu", o->type->name, r->lights.count - 1);
+    return true;
+}
+
+// ---- shapes ---------------------------------------------------------------------------------
+
+// A point in double, which parameter tables have in float.
+static bool read_point(const struct xml_node *node, const char *name, double out[3]) {
+    for (const struct xml_node *c = node->first; c; c = c->next) {
+        const char *child_name = xml_get(c, "name");
+        if (child_name && strcmp(child_name, name) == 0)
+            return value_vector(c, 0, out);
+    }
+    return true; // keeps the default
+}
+
+// The unit cylinder about z onto one from a to b.
+static bool cylinder_transform(const struct xml_node *node, double radius, struct transform *t) {
+    double a[3] = {0, 0, 0}, b[3] = {0, 0, 1}, z[3];
+    if (!read_point(node, "p0", a) || !read_point(node, "p1", b))
+        return false;
+    for (int k = 0; k < 3; k++)
+        z[k] = b[k] - a[k];
+    const double length = sqrt(z[0] * z[0] + z[1] * z[1] + z[2] * z[2]);
+    if (!(length > 0)) {
+        log_error_at(node->at, "cylinder: p0 and p1 coincide");
+        return false;
+    }
+    for (int k = 0; k < 3; k++)
+        z[k] /= length;
+    // axes in double after Duff et al. 2017, as math/frame.h
+    const double sign = copysign(1, z[2]), c = -1 / (sign + z[2]), d = z[0] * z[1] * c;
+    const double x[3] = {1 + sign * z[0] * z[0] * c, sign * d, -sign * z[0]};
+    const double y[3] = {d, sign + z[1] * z[1] * c, -z[1]};
+    *t = transform_identity;
+    for (int k = 0; k < 3; k++) {
+        t->m[k][0] = radius * x[k];
+        t->m[k][1] = radius * y[k];
+        t->m[k][2] = length * z[k];
+        t->m[k][3] = a[k];
+    }
+    return true;
+}
+
+static bool place_quadric(const struct xml_node *node, int type, const struct shape_data *d,
+                          struct shape *s) {
+    double centre[3] = {0, 0, 0};
+    struct transform own = transform_identity;
+    s->kind = type == SPHERE ? SHAPE_SPHERE : type == DISK ? SHAPE_DISK : SHAPE_CYLINDER;
+    if (type == CYLINDER && !cylinder_transform(node, d->radius, &own))
+        return false;
+    if (type == SPHERE) {
+        if (!read_point(node, "center", centre))
+            return false;
+        const struct transform move = transform_translate(centre[0], centre[1], centre[2]);
+        const struct transform size = transform_scale(d->radius, d->radius, d->radius);
+        own = transform_multiply(&move, &size);
+    }
+    s->to_world = transform_multiply(&d->to_world, &own);
+    return true;
+}
+
+static void queue_mesh(struct reader *r, const struct shape_data *d, const struct entry *reader,
+                       bool flip_default) {
+    struct mesh_job *job = LIST_ADD(&r->jobs, struct mesh_job);
+    job->shape = (uint32_t)r->shapes.count - 1;
+    job->type = (const struct mesh_reader_type *)(const void *)reader;
+    job->path = d->filename;
+    job->options = (struct mesh_options){
+        .shape_index = d->shape_index, .face_normals = d->face_normals,
+        .flip_uvs = d->flip_tex_coords != flip_default, .shape_name = d->shape_name, .threads = 1};
+}
+
+static bool make_shape(struct reader *r, struct xml_node *node, int type,
+                       const struct entry *mesh_reader, uint32_t group) {
+    const struct entry *e = type == MESH
+                                ? &shape_types[strcmp(mesh_reader->name, "obj") == 0 ? OBJ : MESH]
+                                : &shape_types[type];
+    struct shape_data d;
+    struct contents contents = {.group = SCENE_NONE};
+    memset(&d, 0, sizeof d);
+    if (!object_fill(r, node, e, &d, false, shape_child, &contents))
+        return false;
+    struct shape *s = LIST_ADD(&r->shapes, struct shape);
+    const char *id = xml_get(node, "id");
+    *s = (struct shape){.kind = SHAPE_MESH, .name = id ? id : "", .type = xml_get(node, "type"),
+                        .at = node->at, .to_world = d.to_world, .flip_normals = d.flip_normals,
+                        .bsdf = contents.bsdf, .light = SCENE_NONE, .group = group};
+    const uint32_t index = (uint32_t)r->shapes.count - 1;
+    if (type == RECTANGLE)
+        mesh_make_rectangle(&s->mesh);
+    else if (type == CUBE)
+        mesh_make_cube(&s->mesh);
+    else if (type == MESH)
+        queue_mesh(r, &d, mesh_reader, e == &shape_types[OBJ]);
+    else if (!place_quadric(node, type, &d, s))
+        return false;
+    if (!s->bsdf)
+        s->bsdf = default_bsdf(r, contents.emitter != NULL, node->at);
+    if (!s->bsdf || !contents.emitter)
+        return s->bsdf != NULL;
+    if (group != SCENE_NONE) {
+        log_error_at(contents.emitter->at, "an emitter in a shapegroup: instances cannot emit");
+        return false;
+    }
+    s->light = (uint32_t)r->lights.count;
+    return emitter_read(r, contents.emitter, index);
+}
+
+static bool make_instance(struct reader *r, struct xml_node *node) {
+    struct shape_data d;
+    struct contents contents = {.group = SCENE_NONE};
+    memset(&d, 0, sizeof d);
+    if (!object_fill(r, node, &shape_types[INSTANCE], &d, false, instance_child, &contents))
+        return false;
+    if (contents.group == SCENE_NONE) {
+        log_error_at(node->at, "an instance holds exactly one shapegroup");
+        return false;
+    }
+    const char *id = xml_get(node, "id");
+    *LIST_ADD(&r->instances, struct instance) =
+        (struct instance){contents.group, id ? id : "", d.to_world};
+    return true;
+}
+
+// The type of a shape, and its mesh reader where it is a file. -1 after an error message.
+static int shape_type(const struct xml_node *node, const struct entry **mesh_reader) {
+    const char *type = xml_get(node, "type");
+    *mesh_reader = registry_find(&mesh_readers, type);
+    if (*mesh_reader)
+        return MESH;
+    const struct entry *e = registry_find(&shape_registry, type);
+    if (e && e != &shape_types[OBJ])
+        return (int)(e - shape_types);
+    const char *nearest = registry_nearest(&shape_registry, type);
+    nearest = nearest ? nearest : registry_nearest(&mesh_readers, type);
+    log_error_at(node->at, "shape \"%s\" is not known%s%s%s", type,
+                 nearest ? "; did you mean \"" : "", nearest ? nearest : "",
+                 nearest ? "\"?" : "");
+    return -1;
+}
+
+static bool group_child(struct reader *r, struct xml_node *child, struct xml_node *target,
+                        struct id_entry *entry, void *ctx) {
+    const struct entry *mesh_reader;
+    (void)entry;
+    if (strcmp(target->tag, "shape") != 0)
+        return refuse(child, target);
+    const int type = shape_type(target, &mesh_reader);
+    if (type == GROUP || type == INSTANCE) {
+        log_error_at(child->at, "a shapegroup cannot hold a %s", shape_types[type].name);
+        return false;
+    }
+    return type >= 0 && make_shape(r, target, type, mesh_reader, *(uint32_t *)ctx);
+}
+
+static bool group_read(struct reader *r, struct xml_node *node, struct id_entry *entry,
+                       uint32_t *group) {
+    if (entry && entry->group != SCENE_NONE) {
+        *group = entry->group;
+        return true;
+    }
+    *group = r->group_count++;
+    if (entry)
+        entry->group = *group;
+    struct shape_data unused;
+    return object_fill(r, node, &shape_types[GROUP], &unused, false, group_child, group);
+}
+
+bool shape_read(struct reader *r, struct xml_node *node, struct id_entry *entry) {
+    const struct entry *mesh_reader;
+    uint32_t group;
+    const int type = shape_type(node, &mesh_reader);
+    if (type == GROUP)
+        return group_read(r, node, entry, &group);
+    if (type == INSTANCE)
+        return make_instance(r, node);
+    return type >= 0 && make_shape(r, node, type, mesh_reader, SCENE_NONE);
+}
