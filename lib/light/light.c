@@ -35,3 +35,26 @@ bool light_sample_point(vec3 position, vec3 p, spectrum intensity, struct light_
                                .p = position};
     return !spectrum_is_black(s->emission);
 }
+
+bool light_rotation(const struct object *self, const struct transform *to_world,
+                    struct affine *world, struct affine *local) {
+    const struct affine a = affine_from(to_world);
+    *world = (struct affine){normalize(a.x), normalize(a.y), normalize(a.z), v3(0, 0, 0)};
+    const float lengths[3] = {length(a.x), length(a.y), length(a.z)};
+    const float tolerance = 1e-4f;
+    const bool rotation = lengths[0] > 0 && fabsf(lengths[1] / lengths[0] - 1) < tolerance &&
+                          fabsf(lengths[2] / lengths[0] - 1) < tolerance &&
+                          fabsf(dot(world->x, world->y)) < tolerance &&
+                          fabsf(dot(world->y, world->z)) < tolerance &&
+                          fabsf(dot(world->z, world->x)) < tolerance;
+    if (!rotation) {
+        log_error_at(self->at, "%s: to_world changes angles, expected a rotation",
+                     self->type->name);
+        return false;
+    }
+    // The inverse of a rotation is its transpose.
+    *local = (struct affine){v3(world->x[0], world->y[0], world->z[0]),
+                             v3(world->x[1], world->y[1], world->z[1]),
+                             v3(world->x[2], world->y[2], world->z[2]), v3(0, 0, 0)};
+    return true;
+}

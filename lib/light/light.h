@@ -79,3 +79,7 @@ float light_power_infinite(float mean_radiance, float radius);
 vec3 light_position(const struct transform *to_world, vec3 local, const struct light_scene *scene);
 // Fills s for a delta light at `position` that sends `intensity` towards p. false: at p itself.
 bool light_sample_point(vec3 position, vec3 p, spectrum intensity, struct light_sample *s);
+// Rotation of infinite lights: unit axes (a mirror and a common scale are fine; the scale is
+// dropped, since it does not move anything at infinity). false after an error message.
+bool light_rotation(const struct object *self, const struct transform *to_world,
+                    struct affine *world, struct affine *local);

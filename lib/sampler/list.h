@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samplers, one a line; each is sampler/NAME.c.
 X(independent)
+X(multijitter)
 X(sobol)
+X(stratified)

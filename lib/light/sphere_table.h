@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// A picture on the sphere in latitude-longitude form, with bilinear interpolation, and sampling of
+// directions in proportion to its luminance.
+//
+// Conventions: local directions with y up; u runs once around it, 0 at -z and a quarter at +x; v
+// runs from 0 at +y to 1 at -y. Texel (x, y) of a width x height picture stands at
+// u = (x + 1/2) / width, v = y / (height - 1): the first and last row are the poles (as Mitsuba).
+// Density: bilinear between (luminance x sine of the row's angle) at the four texels of a patch,
+// where the poles' sine counts as a quarter of the next row's so that no light is out of reach.
+#pragma once
+
+#include "math/vec.h"
+
+struct sphere_table {
+    int width, height;   // height >= 2
+    float (*texels)[3];  // (width + 1) x height, last column as the first; owned
+    float *row_sine;     // height
+    float unit;          // 1 / largest luminance: keeps products in range
+    float *rows;         // cdf of the height - 1 rows of patches; owned
+    float *columns;      // cdf of the patches of each row, width + 1 values each; owned
+    double mean;         // luminance over the sphere
+    bool black;
+};
+
+// Copies width x height RGB pixels. They are finite and not negative.
+void sphere_table_init(struct sphere_table *t, const float *rgb, int width, int height);
+void sphere_table_finish(struct sphere_table *t);
+
+spectrum sphere_table_eval(const struct sphere_table *t, vec3 w);
+float sphere_table_pdf_sa(const struct sphere_table *t, vec3 w);
+// false: the picture is black
+bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, float *pdf_sa,
+                         spectrum *value);
