@@ -24,7 +24,7 @@ static inline bool read_mesh_data(const char *extension, const void *data, size_
     return good;
 }
 
-// Reads the text as the format of the extension with default options (nothing flipped).
+// Reads the text as the format of the extension with default options.
 static inline bool read_mesh(const char *extension, const char *text, struct mesh *m) {
     return read_mesh_data(extension, text, strlen(text), NULL, m);
 }

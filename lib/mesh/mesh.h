@@ -47,7 +47,7 @@ void mesh_compute_normals(struct mesh *m);
 struct mesh_options {
     int shape_index;      // which mesh of a file with several (serialized); else 0
     bool face_normals;    // drop vertex normals
-    bool flip_uvs;        // v -> 1 - v; what a format is used to: mesh_reader_type.flip_uvs
+    bool flip_uvs;        // the other way than Mitsuba's default (OBJ: v -> 1 - v; others: as is)
     const char *shape_name; // OBJ: only this group/object; NULL: all
     int threads;          // 0: default
 };
@@ -58,7 +58,6 @@ struct mesh_options {
 struct mesh_reader_type {
     struct entry entry;             // name: as Mitsuba's shape plugin; params unused
     const char *const *extensions;  // lower case, NULL-terminated
-    bool flip_uvs;                  // Mitsuba's default of flip_tex_coords for this format
     bool (*read)(const char *path, const struct mesh_options *options, struct mesh *m);
 };
 

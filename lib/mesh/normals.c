@@ -85,12 +85,13 @@ float (*mesh_alloc_positions(size_t count))[3] {
     return mem_array(count + 1, 3 * sizeof(float));
 }
 
-bool mesh_complete(struct mesh *m, const char *path, const struct mesh_options *options) {
+bool mesh_complete(struct mesh *m, const char *path, const struct mesh_options *options,
+                   bool flips) {
     if (m->triangle_count == 0) {
         log_error("%s: holds no faces, expected at least one", path);
         return false;
     }
-    for (uint32_t i = 0; options->flip_uvs && m->uvs && i < m->vertex_count; i++)
+    for (uint32_t i = 0; flips && m->uvs && i < m->vertex_count; i++)
         m->uvs[i][1] = 1 - m->uvs[i][1];
     if (options->face_normals) {
         mem_free(m->normals);

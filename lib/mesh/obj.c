@@ -374,7 +374,7 @@ static bool read_obj(const char *path, const struct mesh_options *options, struc
     if (good)
         fill_mesh(&o, m);
     finish(&o);
-    good = good && mesh_complete(m, path, options);
+    good = good && mesh_complete(m, path, options, !options->flip_uvs);
     if (!good)
         mesh_finish(m);
     return good;
@@ -385,6 +385,5 @@ static const char *const extensions[] = {"obj", NULL};
 const struct mesh_reader_type mesh_reader_obj = {
     .entry = {.name = "obj", .help = "Wavefront OBJ, polygons of one file or of one group"},
     .extensions = extensions,
-    .flip_uvs = true,
     .read = read_obj,
 };

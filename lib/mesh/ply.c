@@ -109,7 +109,8 @@ static void plan_attributes(struct ply *f, const struct ply_element *e, const ch
             continue;
         for (int k = 0; k < a->channels; k++)
             f->columns[found[i].property[k]] =
-                (struct column){a->data + k, a->channels, found[i].plain ? DECODE_PLAIN : DECODE_SRGB};
+                (struct column){a->data + k, a->channels,
+                                found[i].plain ? DECODE_PLAIN : DECODE_SRGB};
         f->attributes[f->attribute_count++] = found[i];
     }
 }
@@ -231,7 +232,7 @@ static bool read_faces(struct ply *f, const struct ply_element *e) {
         log_error("%s: element face has no list vertex_indices or vertex_index", f->path);
         return false;
     }
-    // as many as there would be if all were triangles, or fewer where the file is too short for that
+    // as many as if all were triangles, or fewer where the file is too short for that
     const struct ply_property *q = &f->header.properties[list];
     const size_t each = ply_least_bytes(&f->source, q->count_type, 1) +
                         ply_least_bytes(&f->source, q->type, 3);
@@ -301,7 +302,7 @@ static bool read_ply(const char *path, const struct mesh_options *options, struc
     mem_free(text);
     mem_free(f->corners);
     mem_free(f);
-    good = good && mesh_complete(m, path, options);
+    good = good && mesh_complete(m, path, options, options->flip_uvs);
     if (!good)
         mesh_finish(m);
     return good;

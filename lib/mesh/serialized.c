@@ -8,8 +8,8 @@
 //   at the end of the file: offsets of all meshes, uint64 (version 4) or uint32 (3), uint32 count
 //
 // As in Mitsuba v of texture coordinates is not flipped by default, and vertex normals are computed
-// when there are none. Beyond Mitsuba 3: colours become the attribute vertex_color, and the flag for
-// face normals is obeyed.
+// when there are none. Beyond Mitsuba 3: colours become the attribute vertex_color, and the flag
+// for face normals is obeyed.
 #include <math.h>
 #include <string.h>
 #include <zlib.h>
@@ -257,7 +257,7 @@ static bool read_serialized(const char *path, const struct mesh_options *options
     const bool good =
         read_data(path, (const unsigned char *)data, size, o.shape_index, &o.face_normals, m);
     mem_free(data);
-    if (good && mesh_complete(m, path, &o))
+    if (good && mesh_complete(m, path, &o, o.flip_uvs))
         return true;
     mesh_finish(m);
     return false;

@@ -52,17 +52,19 @@ static void obj_joins_equal_corners_only(void) {
                     &m));
     CHECK(m.vertex_count == 5); // vertex 3 stands with two texture coordinates
     CHECK(has_triangle(&m, 0, 0, 1, 2) && has_triangle(&m, 1, 1, 3, 4));
-    CHECK(m.positions[4][1] == 1 && m.uvs[4][0] == 1 && m.uvs[2][0] == 0);
+    CHECK(m.positions[4][1] == 1 && m.uvs[4][0] == 1 && m.uvs[2][1] == 1);
     mesh_finish(&m);
 }
 
-static void obj_flips_v_when_asked(void) {
+static void obj_flips_v_unless_told_not_to(void) {
     const char *text = TRIANGLE "vt 0.25 0.25\nf 1/1 2/1 3/1\n";
     const struct mesh_options options = {.flip_uvs = true};
     struct mesh m;
-    CHECK(mesh_reader_obj.flip_uvs);
-    CHECK(read_mesh_data("obj", text, strlen(text), &options, &m));
+    CHECK(read_mesh("obj", text, &m));
     CHECK(m.uvs[0][0] == 0.25f && m.uvs[0][1] == 0.75f);
+    mesh_finish(&m);
+    CHECK(read_mesh_data("obj", text, strlen(text), &options, &m));
+    CHECK(m.uvs[0][0] == 0.25f && m.uvs[0][1] == 0.25f);
     mesh_finish(&m);
 }
 
@@ -200,7 +202,7 @@ int main(void) {
     obj_makes_normals_unit();
     obj_corner_without_normal_takes_computed_one();
     obj_joins_equal_corners_only();
-    obj_flips_v_when_asked();
+    obj_flips_v_unless_told_not_to();
     obj_reads_negative_indices();
     obj_reads_indices_that_point_ahead();
     obj_makes_fans_of_polygons();
