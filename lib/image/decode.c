@@ -187,6 +187,18 @@ static bool receive_attribute(int fd, struct image *im, double deadline) {
     return good;
 }
 
+// Messages quote the file's own names: bytes that would spoil a line of text become '?'.
+static void clean(char *message) {
+    size_t n = strlen(message);
+    while (n > 0 && message[n - 1] == '\n')
+        message[--n] = '\0';
+    for (char *c = message; *c; c++)
+        if (*c == '\n')
+            *c = ' ';
+        else if ((unsigned char)*c < 32 || (unsigned char)*c > 126)
+            *c = '?';
+}
+
 // false: the child died, ran out of time, or refused (then in->message says why).
 static bool receive_image(int fd, struct decoder_input *in, struct image *im, double deadline) {
     struct packet head;
@@ -194,6 +206,8 @@ static bool receive_image(int fd, struct decoder_input *in, struct image *im, do
         return false;
     if (!head.ok) {
         read_all(fd, in->message, sizeof in->message, deadline);
+        in->message[sizeof in->message - 1] = '\0';
+        clean(in->message);
         return false;
     }
     if (head.attributes < 0 || head.attributes > MOST_ATTRIBUTES ||

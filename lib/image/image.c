@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "image/decode.h"
+#include "image/oiio.h"
 
 bool image_init(struct image *im, int width, int height, int channels) {
     static const char *const names[5][4] = {{0}, {"Y"}, {"Y", "A"}, {"R", "G", "B"},
@@ -99,7 +100,10 @@ static bool is_exr(const char *path) {
 
 bool image_read(const char *path, struct image *im) {
     *im = (struct image){0};
-    return image_decode_in_child(path, is_exr(path) ? exr_decode : oiio_decode, im);
+    const bool exr = is_exr(path);
+    if (!exr && file_exists(path) && !oiio_load())
+        return false;
+    return image_decode_in_child(path, exr ? exr_decode : oiio_decode, im);
 }
 
 // Finds the channels of a layer that make its colour; false if it has none.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only C++ file: OpenImageIO has no C interface.
+// The only C++ file: OpenImageIO has no C interface. Built as a module (oiio.h says why).
 #include <OpenImageIO/imageio.h>
 
 #include <cstdio>
@@ -8,9 +8,17 @@
 #include <string>
 
 extern "C" {
-#include "image/decode.h"
-}
 #include "image/oiio.h"
+}
+
+extern "C" oiio_module_decode_function oiio_module_decode;
+extern "C" oiio_module_write_png_function oiio_module_write_png;
+
+static bool fail(struct decoder_input *in, const std::string &why) {
+    std::snprintf(in->message, sizeof in->message, "%s",
+                  why.empty() ? "it is damaged" : why.c_str());
+    return false;
+}
 
 // 8-bit pictures and 16-bit PNG are in a display encoding unless the file itself says linear.
 static bool is_srgb(const OIIO::ImageSpec &spec, const std::string &format) {
@@ -20,36 +28,35 @@ static bool is_srgb(const OIIO::ImageSpec &spec, const std::string &format) {
     return (small || wide_png) && !linear;
 }
 
-static bool decode(struct decoder_input *in, struct image *im) {
+static bool decode(const struct oiio_host *host, struct decoder_input *in, struct image *im) {
     // The child has no threads but this one; libraries must not wait for others.
     OIIO::attribute("threads", 1);
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1; // colour stays as it stands in the file
     auto input = OIIO::ImageInput::open(in->path, &config);
     if (!input)
-        return decoder_fail(in, "%s", OIIO::geterror().c_str());
+        return fail(in, OIIO::geterror());
     const OIIO::ImageSpec &spec = input->spec();
     if (spec.deep || spec.depth > 1)
-        return decoder_fail(in, "is a deep or volume picture; expected a flat one");
-    if (!decoder_init_image(in, im, spec.width, spec.height, spec.nchannels))
+        return fail(in, "is a deep or volume picture; expected a flat one");
+    if (!host->init_image(in, im, spec.width, spec.height, spec.nchannels))
         return false;
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, im->pixels)) {
-        const std::string why = input->geterror();
-        return decoder_fail(in, "%s", why.empty() ? "it is damaged" : why.c_str());
-    }
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, im->pixels))
+        return fail(in, input->geterror());
     for (int c = 0; c < im->channels && c < (int)spec.channelnames.size(); c++)
         std::snprintf(im->channel_names[c], IMAGE_NAME_SIZE, "%s", spec.channelnames[c].c_str());
     im->srgb_encoded = is_srgb(spec, input->format_name());
     im->bits = (int)spec.format.size() * 8;
-    image_set_text(im, "file.format", input->format_name());
+    host->set_text(im, "file.format", input->format_name());
     return true;
 }
 
-extern "C" bool oiio_decode(struct decoder_input *in, struct image *im) {
+extern "C" bool oiio_module_decode(const struct oiio_host *host, struct decoder_input *in,
+                                   struct image *im) {
     try {
-        return decode(in, im);
+        return decode(host, in, im);
     } catch (const std::exception &e) {
-        return decoder_fail(in, "%s", e.what());
+        return fail(in, e.what());
     }
 }
 
@@ -70,8 +77,8 @@ static bool write_png(const char *path, const unsigned char *bytes, int width, i
     return good;
 }
 
-extern "C" bool oiio_write_png(const char *path, const unsigned char *bytes, int width, int height,
-                               int channels, char *message, size_t n) {
+extern "C" bool oiio_module_write_png(const char *path, const unsigned char *bytes, int width,
+                                      int height, int channels, char *message, size_t n) {
     std::string why;
     bool good = false;
     try {

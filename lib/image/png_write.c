@@ -16,7 +16,7 @@ bool image_write_png(const char *path, const struct image *im) {
     const size_t count = (size_t)im->width * (size_t)im->height, in = (size_t)im->channels;
     const size_t out = in >= 3 ? 3 : 1;
     char temp[4096], message[512] = "";
-    if (!file_temp_name(path, temp, sizeof temp))
+    if (!oiio_load() || !file_temp_name(path, temp, sizeof temp))
         return false;
     unsigned char *bytes = mem_array(count, out);
     for (size_t p = 0; p < count; p++)
