@@ -7,9 +7,10 @@
 // Zeroed positions with the padding a mesh needs.
 float (*mesh_alloc_positions(size_t count))[3];
 
-// The last step of each reader, with all arrays filled and indices checked: applies the options
-// (flips: whether v becomes 1 - v), makes normals unit, and computes those that are missing. Normals of length zero, in `path` or
-// left so by the reader for vertices that have none, take the computed one.
+// The last step of each reader, with all arrays filled and indices checked: turns v of texture
+// coordinates into 1 - v where `flips`, makes normals unit, and computes those that are missing or
+// drops them as the options want. Normals of length zero, in `path` or left so by the reader for
+// vertices that have none, take the computed one.
 // false after a message when the mesh has no triangles.
 bool mesh_complete(struct mesh *m, const char *path, const struct mesh_options *options,
                    bool flips);

@@ -153,8 +153,8 @@ static void ply_steps_over_unknown_elements(void) {
 }
 
 #define MESH(count, faces, points, face)                                                           \
-    ASCII "element vertex " count "\n" XYZ "element face " faces "\n" INDICES "end_header\n"         \
-        points face
+    ASCII "element vertex " count "\n" XYZ "element face " faces "\n" INDICES                      \
+          "end_header\n" points face
 
 static void ply_refuses_bad_values(void) {
     CHECK(refuses("ply", MESH("3", "1", "0 0 0\n1 nan 0\n0 1 0\n", "3 0 1 2\n"),
