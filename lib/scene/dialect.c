@@ -11,7 +11,7 @@ static const struct tag {
     const char *attributes; // allowed ones, each followed by a blank; '!' before required ones
     const char *was;        // its name in old versions
 } tags[] = {
-    {"scene", TAG_OBJECT, "version type id "},
+    {"scene", TAG_OBJECT, "type id "},
     {"bsdf", TAG_OBJECT, "!type id name "},
     {"emitter", TAG_OBJECT, "!type id name ", "luminaire"},
     {"shape", TAG_OBJECT, "!type id name "},
@@ -179,7 +179,8 @@ bool dialect_check(struct reader *r, struct xml_node *node) {
     if (!t->attributes)
         return true;
     for (int i = 0; i < node->attribute_count; i++)
-        if (!listed(t->attributes, node->attributes[i].name)) {
+        if (!listed("version ", node->attributes[i].name) && // outermost elements have it
+            !listed(t->attributes, node->attributes[i].name)) {
             log_error_at(node->at, "<%s> has no attribute \"%s\"; it may have: %s", node->tag,
                          node->attributes[i].name, t->attributes);
             return false;

@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -10,7 +11,8 @@
 #include "base/file.h"
 #include "scene/reader.h"
 
-enum { MOST_INCLUDE_DEPTH = 16, MOST_FILES = 10000, MOST_VALUE = 1 << 20 };
+enum { MOST_INCLUDE_DEPTH = 16, MOST_FILES = 10000, MOST_VALUE = 1 << 20,
+       HASH_PIECE = 1 << 20 };
 
 struct variable {
     const char *name, *value;
@@ -180,12 +182,19 @@ bool load_hash_file(struct reader *r, const char *path) {
     for (size_t i = 0; i < r->hashed.count; i++)
         if (strcmp(LIST_AT(&r->hashed, const char *, i), path) == 0)
             return true;
-    size_t size;
-    char *data = file_read(path, 0, &size);
-    if (!data)
+    FILE *f = fopen(path, "rb");
+    unsigned char *piece = mem_array(HASH_PIECE, 1);
+    size_t n;
+    while (f && (n = fread(piece, 1, HASH_PIECE, f)) > 0)
+        r->scene->hash = file_hash(piece, n, r->scene->hash);
+    const bool ok = f && !ferror(f);
+    if (!ok)
+        log_error("%s: cannot be read: %s", path, strerror(errno));
+    if (f)
+        fclose(f);
+    mem_free(piece);
+    if (!ok)
         return false;
-    r->scene->hash = file_hash(data, size, r->scene->hash);
-    mem_free(data);
     *LIST_ADD(&r->hashed, const char *) = path;
     return true;
 }
@@ -272,9 +281,10 @@ static bool include(struct reader *r, struct xml_node *parent, const struct xml_
     struct xml_node *root = load_file(r, path, node, file);
     if (!root)
         return false;
-    if (strcmp(root->tag, "scene") != 0) {
+    if (strcmp(root->tag, "scene") != 0) { // the file is one object
         xml_append(parent, root);
-        return true;
+        const char *id = xml_get(root, "id");
+        return !id || id_define(r, id, root, root->at);
     }
     for (struct xml_node *c = root->first, *next; c; c = next) {
         next = c->next;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Objects of the registries from elements, by parameter table alone.
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -70,10 +71,10 @@ struct fill {
 
 static bool unknown_parameter(const struct fill *f, const struct xml_node *child,
                               const char *name) {
-    const char *nearest = param_nearest(f->e, name);
-    char hint[256] = "";
     if (f->drop_unknown)
         return true;
+    const char *nearest = param_nearest(f->e, name);
+    char hint[256] = "";
     if (nearest)
         snprintf(hint, sizeof hint, "; did you mean \"%s\"?", nearest);
     else {
@@ -147,16 +148,18 @@ static bool fill_object(struct fill *f, struct xml_node *child, child_fn other, 
         return claim(f, p, child) && param_read_object(f->r, target, entry, p, f->data);
     if (other)
         return other(f->r, child, target, entry, ctx);
-    if (name)
+    if (name || f->drop_unknown)
         return unknown_parameter(f, child, name);
     log_error_at(child->at, "%s \"%s\" has no place for a %s", f->node->tag,
                  xml_get(f->node, "type"), target->tag);
-    return f->drop_unknown;
+    return false;
 }
 
 bool object_fill(struct reader *r, const struct xml_node *node, const struct entry *e, void *data,
                  bool drop_unknown, child_fn other, void *ctx) {
     struct fill f = {r, node, e, data, drop_unknown, {false}};
+    for (const struct param *p = e->params; p && p->name; p++)
+        assert(p - e->params < MOST_PARAMS);
     for (struct xml_node *child = node->first; child; child = child->next) {
         const bool is_value = tag_kind(child) == TAG_VALUE;
         if (!(is_value ? fill_value(&f, child) : fill_object(&f, child, other, ctx)))

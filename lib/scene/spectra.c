@@ -85,24 +85,31 @@ static bool parse_pairs(const char *text, struct samples *s) {
     }
 }
 
-// Lines of "wavelength value"; '#' begins a comment.
+// Numbers in a line of at most 127 characters, '#' beginning a comment; -1: something else.
+static int line_numbers(const char *line, double v[2]) {
+    char copy[128];
+    const size_t n = strcspn(line, "#\r\n");
+    if (n >= sizeof copy)
+        return -1;
+    memcpy(copy, line, n);
+    copy[n] = '\0';
+    return value_numbers(copy, v, 2);
+}
+
+// Lines of "wavelength value".
 static bool parse_file(const char *text, const char *path, struct samples *s) {
     int line = 1;
     for (const char *c = text; *c; line++) {
-        const char *newline = strchr(c, '\n');
-        const size_t length = newline ? (size_t)(newline - c) : strlen(c);
-        char copy[128];
         double v[2];
-        const size_t n = strcspn(c, "#\n\r");
-        const int count = n < sizeof copy ? (memcpy(copy, c, n), copy[n] = '\0',
-                                             value_numbers(copy, v, 2)) : n > length ? 0 : -1;
-        if (count == 2)
-            samples_add(s, v[0], v[1]);
-        else if (count != 0) {
+        const int count = line_numbers(c, v);
+        if (count != 0 && count != 2) {
             log_error("%s:%d: expected a wavelength in nm and a value", path, line);
             return false;
         }
-        c += length + (newline != NULL);
+        if (count == 2)
+            samples_add(s, v[0], v[1]);
+        c += strcspn(c, "\n");
+        c += *c == '\n';
     }
     return true;
 }
@@ -171,8 +178,9 @@ static bool read_plain_spectrum(struct reader *r, const struct xml_node *node, e
     if (value && value_numbers(value, &single, 1) == 1)
         return uniform(node, single, use, out);
     struct samples s = {0};
-    const bool parsed = value ? parse_pairs(value, &s) || bad_colour(node, "a number or pairs "
-                                "wavelength:value") : read_file(r, node, &s);
+    const bool parsed =
+        value ? parse_pairs(value, &s) || bad_colour(node, "a number or pairs wavelength:value")
+              : read_file(r, node, &s);
     const bool ok = parsed && samples_convert(&s, use, node->at, out);
     samples_finish(&s);
     return ok;
