@@ -18,6 +18,7 @@ static const struct param params[] = {
                          "geo_normal, sh_normal, shape_index"},
     {"integrator", PARAM_INTEGRATOR, offsetof(struct aov, nested), .unit = "", .optional = true,
      .help = "makes the picture; without one it stays black"},
+    INTEGRATOR_IGNORED,
     PARAM_END,
 };
 

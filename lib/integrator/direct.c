@@ -18,6 +18,7 @@ static const struct param params[] = {
      .max = 1024, .unit = "", .help = "material samples at each point; -1: shading_samples"},
     {"hide_emitters", PARAM_BOOL, offsetof(struct direct, hide_emitters), .def = "false",
      .unit = "", .help = "do not show lights that are seen directly"},
+    INTEGRATOR_IGNORED,
     PARAM_END,
 };
 

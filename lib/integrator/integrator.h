@@ -45,6 +45,10 @@ struct integrator_type {
                   const struct path_start starts[SINK_LANES]);
 };
 
+// How other renderers cut up their work; here it cannot change the picture.
+#define INTEGRATOR_IGNORED                                                                         \
+    {"samples_per_pass", PARAM_IGNORED}, {"timeout", PARAM_IGNORED}, {"block_size", PARAM_IGNORED}
+
 #define X(name) extern const struct integrator_type integrator_##name;
 #include "integrator/list.h"
 #undef X

@@ -9,6 +9,7 @@ struct moment {
 static const struct param params[] = {
     {"integrator", PARAM_INTEGRATOR, offsetof(struct moment, nested), .unit = "",
      .help = "the integrator whose samples are measured"},
+    INTEGRATOR_IGNORED,
     PARAM_END,
 };
 

@@ -20,6 +20,7 @@ static const struct param params[] = {
      .help = "do not show lights that are seen directly"},
     {"strict_normals", PARAM_BOOL, offsetof(struct path, strict_normals), .def = "false",
      .unit = "", .help = "drop directions on which shading and geometric normal disagree"},
+    INTEGRATOR_IGNORED,
     PARAM_END,
 };
 

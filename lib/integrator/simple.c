@@ -11,6 +11,7 @@ struct simple {
 static const struct param params[] = {
     {"max_depth", PARAM_INT, offsetof(struct simple, max_depth), .def = "-1", .min = -1, .max = 1e6,
      .unit = "", .help = "most edges of a path; -1: no limit"},
+    INTEGRATOR_IGNORED,
     PARAM_END,
 };
 
