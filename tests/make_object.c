@@ -140,7 +140,7 @@ struct object *make_texture(struct arena *arena, const char *name, const char *o
                             const struct object *const *children) {
     struct object *o = make_object(arena, &textures, name, overrides, children);
     const struct texture_type *type = texture_type_of(o);
-    if (type->prepare && !type->prepare(o->data, arena))
+    if (type->prepare && !type->prepare(o, arena))
         fail(o->type, "was not prepared with", overrides ? overrides : "");
     return o;
 }

@@ -172,8 +172,8 @@ static spectrum compute_mean(const struct bitmap *self) {
     return spectrum_rgb((float)(sum[0] / n), (float)(sum[1] / n), (float)(sum[2] / n));
 }
 
-static bool prepare(void *data, struct arena *arena) {
-    struct bitmap *self = data;
+static bool prepare(struct object *object, struct arena *arena) {
+    struct bitmap *self = object->data;
     struct image im = {0};
     int channel[3];
     (void)arena;

@@ -16,8 +16,8 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-static bool prepare(void *data, struct arena *arena) {
-    struct checkerboard *self = data;
+static bool prepare(struct object *object, struct arena *arena) {
+    struct checkerboard *self = object->data;
     (void)arena;
     uv_prepare(&self->uv);
     return true;

@@ -17,13 +17,13 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-static bool prepare(void *data, struct arena *arena) {
-    const struct mesh_attribute_texture *self = data;
+static bool prepare(struct object *object, struct arena *arena) {
+    const struct mesh_attribute_texture *self = object->data;
     (void)arena;
     if (strncmp(self->name, "vertex_", 7) == 0 || strncmp(self->name, "face_", 5) == 0)
         return true;
-    log_error("mesh_attribute: name \"%s\" was found, expected vertex_NAME or face_NAME",
-              self->name);
+    log_error_at(object->at, "mesh_attribute: name \"%s\" was found, expected vertex_NAME or "
+                 "face_NAME", self->name);
     return false;
 }
 

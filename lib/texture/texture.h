@@ -27,7 +27,7 @@ struct texture_type {
     struct entry entry;
     // After the parameters are filled: reads files, builds tables; memory from the arena or owned
     // until finish. false after an error message.
-    bool (*prepare)(void *data, struct arena *arena);
+    bool (*prepare)(struct object *self, struct arena *arena);
     spectrum (*eval)(const void *data, const struct texture_point *at);
     // Gradient of the luminance with respect to (u, v), for bump maps. NULL: by finite differences.
     struct vec2 (*gradient)(const void *data, const struct texture_point *at);
