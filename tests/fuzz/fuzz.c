@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/mem.h"
+#include "mutate.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define ADDRESS_SANITIZER 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define ADDRESS_SANITIZER 1
+#endif
+#endif
+
+enum { BATCH = 200, SECONDS = 10, MEBIBYTES = 1024 };
+
+enum outcome { PENDING, READ, REFUSED, SILENT, CRASHED, HUNG };
+static const char *const outcome_names[] = {"pending",         "read",    "refused",
+                                            "refused without a word", "crashed", "hung"};
+
+#ifdef ADDRESS_SANITIZER
+// Options that make an allocation above the limit a crash; what the environment says comes on top.
+const char *__asan_default_options(void);
+const char *__asan_default_options(void) {
+    return "max_allocation_size_mb=1024:allocator_may_return_null=0:new_delete_type_mismatch=0";
+}
+#endif
+
+struct fuzz {
+    const char *name;
+    fuzz_reader read;
+    int count;
+    uint64_t seed;
+    const char **files;
+    int file_count;
+    unsigned char *outcomes; // shared with the children
+    char directory[64], message_path[128];
+};
+
+static struct mutant make_case(const struct fuzz *f, int i) {
+    struct rng rng = {hash_u64(f->seed) ^ hash_u64((uint64_t)i + 1)};
+    size_t size;
+    const char *path = f->files[i % f->file_count];
+    char *data = file_read(path, 0, &size);
+    if (!data)
+        exit(2);
+    const struct mutant m = mutate((const unsigned char *)data, size, &rng);
+    mem_free(data);
+    return m;
+}
+
+static void case_path(const struct fuzz *f, int i, char *path, size_t n) {
+    char extension[16];
+    file_extension(f->files[i % f->file_count], extension, sizeof extension);
+    snprintf(path, n, "%s/%s-%llu-%d.%s", f->directory, f->name, (unsigned long long)f->seed, i,
+             extension);
+}
+
+static void write_case(const struct fuzz *f, int i, const char *path) {
+    struct mutant m = make_case(f, i);
+    FILE *file = fopen(path, "wb");
+    if (!file || fwrite(m.data, 1, m.size, file) != m.size || fclose(file) != 0) {
+        perror(path);
+        exit(2);
+    }
+    mem_free(m.data);
+}
+
+// Whether the messages of the case, which begin at byte `from` of the file, hold its path; if not,
+// they are shown.
+static bool message_names(const struct fuzz *f, long from, const char *path) {
+    FILE *file = fopen(f->message_path, "rb");
+    static char text[1 << 16];
+    if (!file || fseek(file, from, SEEK_SET) != 0)
+        exit(2);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    const bool named = strstr(text, path) != NULL;
+    if (!named)
+        printf("%s: refused without a word, or with one that does not name it: %s\n", path, text);
+    return named;
+}
+
+static void run_case(const struct fuzz *f, int i) {
+    char path[256];
+    case_path(f, i, path, sizeof path);
+    write_case(f, i, path);
+    fflush(stderr);
+    const long from = (long)lseek(2, 0, SEEK_END);
+    fprintf(stderr, "case %d\n", i);
+    alarm(SECONDS);
+    const bool good = f->read(path);
+    alarm(0);
+    fflush(stderr);
+    const long at = from + snprintf(NULL, 0, "case %d\n", i);
+    f->outcomes[i] = good ? READ : message_names(f, at, path) ? REFUSED : SILENT;
+    if (f->outcomes[i] != SILENT)
+        remove(path);
+}
+
+static _Noreturn void run_batch(const struct fuzz *f, int first, int end) {
+    const int fd = open(f->message_path, O_RDWR | O_CREAT | O_TRUNC | O_APPEND, 0666);
+    if (fd < 0 || dup2(fd, 2) < 0)
+        exit(2);
+#ifndef ADDRESS_SANITIZER
+    // The limit counts what is there already, libraries included: twice as much for all together.
+    const struct rlimit memory = {2ul * MEBIBYTES << 20, 2ul * MEBIBYTES << 20};
+    setrlimit(RLIMIT_AS, &memory);
+#endif
+    const struct rlimit no_core = {0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    for (int i = first; i < end; i++)
+        run_case(f, i);
+    exit(0);
+}
+
+// Keeps what the child wrote beside the file of the case it died of.
+static void keep_messages(const struct fuzz *f, int i) {
+    char path[256], to[300];
+    case_path(f, i, path, sizeof path);
+    snprintf(to, sizeof to, "%s.txt", path);
+    rename(f->message_path, to);
+    printf("%s: %s, see %s.txt\n", path, outcome_names[f->outcomes[i]], path);
+}
+
+// Runs cases from `first` on in one child; returns the first one that is still to be done.
+static int fork_batch(const struct fuzz *f, int first, int end) {
+    fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0)
+        run_batch(f, first, end);
+    int status;
+    if (child < 0 || waitpid(child, &status, 0) != child) {
+        perror("fork");
+        exit(2);
+    }
+    int i = first;
+    while (i < end && f->outcomes[i] != PENDING)
+        i++;
+    if (i == end)
+        return end;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
+        exit(2);
+    f->outcomes[i] = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM ? HUNG : CRASHED;
+    keep_messages(f, i);
+    return i + 1;
+}
+
+static void add_file(struct fuzz *f, const char *argument) {
+    const char *shared = getenv("RELUME_SHARED_DATA");
+    char *path = mem_array(4096, 1);
+    if (strncmp(argument, "@/", 2) != 0)
+        snprintf(path, 4096, "%s", argument);
+    else if (shared)
+        snprintf(path, 4096, "%s%s", shared, argument + 1);
+    else
+        return mem_free(path);
+    f->files[f->file_count++] = path;
+}
+
+static void parse(struct fuzz *f, int argc, char **argv) {
+    const char *full = getenv("RELUME_TEST_FULL");
+    int long_count = 0;
+    f->count = 200;
+    f->files = mem_array((size_t)argc, sizeof *f->files);
+    for (int i = 1; i < argc; i++) {
+        const bool value = i + 1 < argc;
+        if (strcmp(argv[i], "--count") == 0 && value)
+            f->count = atoi(argv[++i]);
+        else if (strcmp(argv[i], "--full") == 0 && value)
+            long_count = atoi(argv[++i]);
+        else if (strcmp(argv[i], "--seed") == 0 && value)
+            f->seed = strtoull(argv[++i], NULL, 10);
+        else
+            add_file(f, argv[i]);
+    }
+    if (full && *full && long_count)
+        f->count = long_count;
+}
+
+static int report(const struct fuzz *f) {
+    int counts[6] = {0};
+    for (int i = 0; i < f->count; i++)
+        counts[f->outcomes[i]]++;
+    printf("%s: %d copies of %d files, seed %llu:", f->name, f->count, f->file_count,
+           (unsigned long long)f->seed);
+    for (int k = READ; k <= HUNG; k++)
+        printf(" %d %s%s", counts[k], outcome_names[k], k < HUNG ? "," : "\n");
+    return counts[SILENT] + counts[CRASHED] + counts[HUNG] + counts[PENDING] > 0;
+}
+
+int fuzz_main(int argc, char **argv, const char *name, fuzz_reader read) {
+    struct fuzz f = {.name = name, .read = read};
+    parse(&f, argc, argv);
+    if (f.file_count == 0) {
+        printf("%s: no file to start from\n", name);
+        mem_free(f.files);
+        return 77;
+    }
+    f.outcomes = mmap(NULL, (size_t)f.count + 1, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS,
+                      -1, 0);
+    snprintf(f.directory, sizeof f.directory, "fuzz-XXXXXX");
+    if (f.outcomes == MAP_FAILED || !mkdtemp(f.directory)) {
+        perror("fuzz");
+        return 2;
+    }
+    snprintf(f.message_path, sizeof f.message_path, "%s/messages", f.directory);
+    for (int i = 0; i < f.count;)
+        i = fork_batch(&f, i, i + BATCH < f.count ? i + BATCH : f.count);
+    const int status = report(&f);
+    remove(f.message_path);
+    rmdir(f.directory); // stays when something is kept in it
+    for (int i = 0; i < f.file_count; i++)
+        mem_free((void *)(uintptr_t)f.files[i]);
+    mem_free(f.files);
+    munmap(f.outcomes, (size_t)f.count + 1);
+    return status;
+}
