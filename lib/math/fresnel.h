@@ -3,7 +3,8 @@
 //
 // Conventions: eta is the index of the far side over that of the near side (where the light comes
 // from); cos_i >= 0 is on the near side. All forms are free of cancellation: F is exactly 0 at
-// eta = 1 (or eta = 1, k = 0), exactly 1 at grazing incidence otherwise, and never leaves [0, 1].
+// eta = 1 (or eta = 1, k = 0), 1 to rounding at grazing incidence otherwise, and never leaves
+// [0, 1].
 #pragma once
 
 #include "math/vec.h"

@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every material of the registry, in many parameter sets and seen from 20 directions:
+//
+//  - samples against the density they claim: chi-square over bins around the lobe's peak, delta
+//    lobes and failures to scatter as bins of their own; the bins' probabilities by adaptive
+//    cubature. All tests together raise a false alarm with probability 1 % (Sidak), once per choice
+//    of seeds;
+//  - a sample's density and weight equal eval's; the density integrates to at most 1;
+//  - the mean weight equals the directional albedo by cubature (z-test, counted with the above);
+//  - reciprocity and energy where claimed; the albedos are printed as a table.
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "cubature.h"
+#include "math/hash.h"
+#include "property/bsdf_cases.h"
+#include "statistics.h"
+
+enum { QUANTILES = 10, RINGS = 40, SECTORS = 6, DELTAS = 4 };
+
+static int samples = 30000;
+static const double FALSE_ALARMS = 0.01;
+
+// One hemisphere of wi, in polar coordinates (r, phi) around the direction of greatest density: at
+// the angle and azimuth of the plane's point (r cos phi, squeeze r sin phi). At grazing incidence
+// lobes are squeezed across the plane of incidence, which holds the frame's s.
+struct side {
+    float sign;
+    struct frame pole;
+    float pole_pdf;
+    double squeeze;
+    double edges[RINGS + 1];
+    int rings;
+    int count[RINGS][SECTORS];
+};
+
+struct delta {
+    uint32_t lobe;
+    double probability, weight; // weight: energy, lane mean
+    int count;
+};
+
+struct run {
+    const struct bsdf_case *c;
+    const struct closure *closure;
+    vec3 wo;
+    struct side sides[2];
+    struct delta deltas[DELTAS];
+    int failures;
+    double sum, sum2; // of weights as energy
+    const struct side *current;
+};
+
+// Energy per radiance: refraction's scaling of radiance divided out.
+static float energy_factor(const struct bsdf_case *c, vec3 wo, vec3 wi) {
+    const float eta = c->eta > 0 ? c->eta : 1;
+    if (wo[2] * wi[2] > 0)
+        return 1;
+    return wo[2] > 0 ? eta * eta : 1 / (eta * eta);
+}
+
+static bool is_sane(spectrum f, float pdf) {
+    return spectrum_is_finite(f) && spectrum_min(f) >= 0 && isfinite(pdf) && pdf >= 0;
+}
+
+static struct pair density(void *ctx, double radius, double phi) {
+    const struct run *r = ctx;
+    const double x = radius * cos(phi), y = r->current->squeeze * radius * sin(phi);
+    const double theta = hypot(x, y);
+    if (!(theta < M_PI))
+        return (struct pair){0, 0};
+    const double sinc = theta > 0 ? sin(theta) / theta : 1;
+    const vec3 l = v3((float)(sinc * x), (float)(sinc * y), (float)cos(theta));
+    const vec3 wi = normalize(to_world(&r->current->pole, l));
+    float pdf;
+    if (!(wi[2] * r->current->sign > 0))
+        return (struct pair){0, 0};
+    const spectrum f = closure_eval(r->closure, wi, &pdf);
+    CHECK(is_sane(f, pdf));
+    const double area = sinc * r->current->squeeze * radius;
+    return (struct pair){pdf * area,
+                         spectrum_mean(f) * energy_factor(r->c, r->wo, wi) * area};
+}
+
+static struct side *side_of(struct run *r, vec3 wi) {
+    return &r->sides[wi[2] > 0 ? 0 : 1];
+}
+
+static void polar(const struct side *s, vec3 wi, double *radius, double *phi) {
+    const vec3 l = to_local(&s->pole, wi);
+    const double across = hypot(l[0], l[1]), theta = atan2(across, l[2]);
+    const double scale = across > 0 ? theta / across : 1;
+    const double x = scale * l[0], y = scale * l[1] / s->squeeze;
+    *radius = hypot(x, y);
+    *phi = atan2(y, x);
+    if (*phi < 0)
+        *phi += 2 * M_PI;
+}
+
+static int compare_doubles(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static bool draw(struct run *r, struct rng *rng, struct bsdf_sample *s) {
+    const float u1 = rng_float(rng);
+    const float u = rng_float(rng), v = rng_float(rng);
+    return closure_sample(r->closure, u1, (struct vec2){u, v}, s);
+}
+
+// Rings of equal probability, by the sorted radii of pilot samples; then each twice as wide as all
+// before it, so that cubature cannot overlook what is left.
+static void place_rings(struct side *side, const double *radius, int n) {
+    const int quantiles = n > 10 * QUANTILES ? QUANTILES : 2;
+    side->rings = 0;
+    for (int i = 1; i < quantiles && n > 4; i++)
+        side->edges[++side->rings] = radius[n * i / quantiles];
+    if (n <= 4)
+        side->edges[++side->rings] = 0.1;
+    while (side->rings < RINGS - 1 && 2 * side->edges[side->rings] < M_PI / side->squeeze) {
+        side->edges[side->rings + 1] = 2 * side->edges[side->rings];
+        side->rings++;
+    }
+    side->edges[++side->rings] = M_PI / side->squeeze;
+}
+
+// Poles and rings from a pilot run.
+static void place_bins(struct run *r) {
+    enum { PILOT = 1500 };
+    static double radius[2][PILOT];
+    static struct bsdf_sample s[PILOT];
+    struct rng rng = {77};
+    int used = 0, n[2] = {0, 0};
+    for (int i = 0; i < 2; i++)
+        r->sides[i] = (struct side){.sign = i ? -1 : 1, .squeeze = 1,
+                                    .pole = frame_from_normal(v3(0, 0, i ? -1 : 1))};
+    for (int i = 0; i < PILOT; i++) {
+        if (!draw(r, &rng, &s[used]) || s[used].lobe & LOBE_DELTA)
+            continue;
+        struct side *side = side_of(r, s[used].wi);
+        if (s[used].pdf_sa > side->pole_pdf) {
+            side->pole_pdf = s[used].pdf_sa;
+            side->pole = frame_from_normal_tangent(s[used].wi, v3(0, 0, 1));
+            side->squeeze = side->pole_pdf > 50 ? fabsf(r->wo[2]) : 1;
+        }
+        used++;
+    }
+    for (int i = 0; i < used; i++) {
+        const int k = s[i].wi[2] > 0 ? 0 : 1;
+        double phi;
+        polar(&r->sides[k], s[i].wi, &radius[k][n[k]++], &phi);
+    }
+    for (int k = 0; k < 2; k++) {
+        qsort(radius[k], (size_t)n[k], sizeof(double), compare_doubles);
+        place_rings(&r->sides[k], radius[k], n[k]);
+    }
+}
+
+static void count_smooth(struct run *r, vec3 wi) {
+    struct side *side = side_of(r, wi);
+    double radius, phi;
+    polar(side, wi, &radius, &phi);
+    int ring = 0;
+    while (ring + 1 < side->rings && radius >= side->edges[ring + 1])
+        ring++;
+    const int sector = (int)(phi / (2 * M_PI) * SECTORS);
+    side->count[ring][sector < SECTORS ? sector : SECTORS - 1]++;
+}
+
+static void count_delta(struct run *r, const struct bsdf_sample *s, double energy) {
+    for (int i = 0; i < DELTAS; i++) {
+        struct delta *d = &r->deltas[i];
+        if (d->count && (d->lobe != s->lobe || fabs(d->probability - s->pdf_sa) > 1e-6))
+            continue;
+        d->lobe = s->lobe;
+        d->probability = s->pdf_sa;
+        d->weight = energy;
+        d->count++;
+        return;
+    }
+    CHECK(!"more delta lobes than expected");
+}
+
+// A sample agrees with what eval says of its direction.
+static void check_against_eval(const struct run *r, const struct bsdf_sample *s) {
+    const double tolerance = r->c->tolerance > 0 ? r->c->tolerance : 2e-3;
+    float pdf;
+    const spectrum f = closure_eval(r->closure, s->wi, &pdf);
+    CHECK(is_sane(f, pdf));
+    if (!(pdf > 0) && s->pdf_sa < 1e-3f)
+        return; // at the very edge of the lobe, to rounding
+    CHECK_NEAR(pdf / s->pdf_sa, 1, tolerance);
+    CHECK_NEAR(spectrum_max(f / pdf), spectrum_max(s->weight),
+               tolerance * fmax(0.02, spectrum_max(s->weight)));
+}
+
+static void draw_samples(struct run *r, uint64_t seed) {
+    struct rng rng = {seed};
+    for (int i = 0; i < samples; i++) {
+        struct bsdf_sample s;
+        if (!draw(r, &rng, &s)) {
+            r->failures++;
+            continue;
+        }
+        CHECK(is_sane(s.weight, s.pdf_sa) && s.pdf_sa > 0 && s.eta > 0);
+        CHECK(fabsf(length(s.wi) - 1) < 1e-5f);
+        CHECK((s.lobe & r->closure->lobes) == s.lobe);
+        CHECK(!(s.lobe & LOBE_REFLECTION) == !(s.wi[2] * r->wo[2] > 0));
+        const double energy = spectrum_mean(s.weight) * sqr(s.eta);
+        r->sum += energy;
+        r->sum2 += energy * energy;
+        if (s.lobe & LOBE_DELTA)
+            count_delta(r, &s, energy);
+        else
+            count_smooth(r, s.wi);
+        if (!(s.lobe & LOBE_DELTA) && i % 16 == 0)
+            check_against_eval(r, &s);
+    }
+}
+
+static void add_side(struct run *r, struct side *side, struct chi2_bins *bins, struct pair *total) {
+    r->current = side;
+    for (int i = 0; i < side->rings; i++) {
+        for (int j = 0; j < SECTORS; j++) {
+            const double w = 2 * M_PI / SECTORS;
+            const int panels = side->edges[i + 1] > 0.4 ? 3 : 1;
+            const struct pair p = cubature_panels(density, r, side->edges[i], side->edges[i + 1],
+                                                  j * w, (j + 1) * w, panels, 2e-5);
+            chi2_add(bins, side->count[i][j], p.a * samples);
+            total->a += p.a;
+            total->b += p.b;
+        }
+    }
+}
+
+struct verdict {
+    double p_chi2, p_mean, albedo;
+};
+
+static struct verdict judge(struct run *r) {
+    struct chi2_bins bins = {0};
+    struct pair total = {0, 0};
+    for (int i = 0; i < 2; i++)
+        add_side(r, &r->sides[i], &bins, &total);
+    for (int i = 0; i < DELTAS && r->deltas[i].count; i++) {
+        chi2_add(&bins, r->deltas[i].count, r->deltas[i].probability * samples);
+        total.a += r->deltas[i].probability;
+        total.b += r->deltas[i].probability * r->deltas[i].weight;
+    }
+    CHECK(total.a <= 1 + 2e-3);
+    chi2_add(&bins, r->failures, fmax(1 - total.a, 0) * samples);
+    const double mean = r->sum / samples;
+    const double variance = fmax(r->sum2 / samples - mean * mean, 0) / samples;
+    const double floor = 4e-4; // of the cubature
+    return (struct verdict){chi2_finish(&bins),
+                            normal_p_value((mean - total.b) / sqrt(variance + floor * floor)),
+                            total.b};
+}
+
+static void check_reciprocity(const struct object *o, struct run *r) {
+    struct rng rng = {5};
+    const struct bsdf_point point = bsdf_case_point();
+    const double tolerance = r->c->tolerance > 0 ? 2 * r->c->tolerance : 4e-3;
+    for (int i = 0; i < 60; i++) {
+        static struct closure_stack stack;
+        struct bsdf_sample s;
+        float pdf;
+        if (!draw(r, &rng, &s) || s.lobe & LOBE_DELTA || fabsf(s.wi[2]) < 1e-3f)
+            continue;
+        const spectrum forth = closure_eval(r->closure, s.wi, &pdf) / fabsf(s.wi[2]) *
+                               energy_factor(r->c, r->wo, s.wi);
+        stack.used = 0;
+        const struct closure *back = bsdf_resolve(o, &point, s.wi, &stack);
+        CHECK(back);
+        if (!back)
+            continue;
+        const spectrum f = closure_eval(back, r->wo, &pdf) / fabsf(r->wo[2]);
+        CHECK_NEAR(spectrum_max(f), spectrum_max(forth),
+                   tolerance * fmax(spectrum_max(forth), 1e-3));
+    }
+}
+
+static uint32_t claims_of(const struct object *o, const struct bsdf_case *c) {
+    uint32_t claims = bsdf_type_of(o)->claims;
+    for (int i = 0; i < 2 && c->children[i]; i++) {
+        char name[64];
+        sscanf(c->children[i], "%63s", name);
+        const struct entry *e = registry_find(&bsdfs, name);
+        claims &= ((const struct bsdf_type *)(const void *)e)->claims;
+    }
+    return claims;
+}
+
+static void run_case(int index, double level) {
+    const struct bsdf_case *c = &bsdf_cases[index];
+    struct arena arena = {0};
+    const struct object *o = bsdf_case_make(&arena, c);
+    const struct bsdf_point point = bsdf_case_point();
+    const uint32_t claims = claims_of(o, c);
+    double albedo[BSDF_DIRECTIONS] = {0};
+    for (int d = 0; d < BSDF_DIRECTIONS; d++) {
+        static struct closure_stack stack;
+        stack.used = 0;
+        struct run r = {.c = c, .wo = bsdf_direction(d)};
+        r.closure = bsdf_resolve(o, &point, r.wo, &stack);
+        if (!r.closure)
+            continue;
+        CHECK((r.closure->lobes & bsdf_lobes(o)) == r.closure->lobes);
+        place_bins(&r);
+        draw_samples(&r, (uint64_t)(index * 1000 + d));
+        const struct verdict v = judge(&r);
+        albedo[d] = v.albedo;
+        if (v.p_chi2 < level || v.p_mean < level)
+            printf("%s %s: direction %d: p(chi-square) %.3g, p(mean) %.3g, required %.3g\n",
+                   c->name, c->overrides, d, v.p_chi2, v.p_mean, level);
+        CHECK(v.p_chi2 >= level);
+        CHECK(v.p_mean >= level);
+        if (claims & CLAIM_ENERGY)
+            CHECK(v.albedo <= 1 + 3e-4);
+        if (claims & CLAIM_LOSSLESS && !c->overrides[0])
+            CHECK_NEAR(v.albedo, 1, 1e-5);
+        if (claims & CLAIM_RECIPROCAL)
+            check_reciprocity(o, &r);
+    }
+    for (int side = 0; side < 2; side++) {
+        printf("%c", side ? '-' : '+');
+        for (int d = 0; d < 10; d++)
+            printf(" %.3f", albedo[10 * side + d]);
+        printf("  %s %s\n", c->name, c->overrides);
+    }
+    arena_finish(&arena);
+}
+
+static void every_entry_has_a_case(void) {
+    for (const struct entry *const *e = bsdfs.entries; *e; e++) {
+        bool found = false;
+        for (int i = 0; i < BSDF_CASES; i++)
+            found = found || strcmp(bsdf_cases[i].name, (*e)->name) == 0;
+        if (!found)
+            printf("no case for %s\n", (*e)->name);
+        CHECK(found);
+    }
+}
+
+int main(int argc, char **argv) {
+    if (getenv("RELUME_TEST_FULL"))
+        samples = 400000;
+    every_entry_has_a_case();
+    const double level = sidak(FALSE_ALARMS, 2 * BSDF_CASES * BSDF_DIRECTIONS);
+    printf("directional albedo from outside (+) and inside (-) at 1 12 27 40 52 63 72 80 86 89 "
+           "degrees\n");
+    for (int i = 0; i < BSDF_CASES; i++)
+        if (argc < 2 || strcmp(argv[1], bsdf_cases[i].name) == 0)
+            run_case(i, level);
+    return check_result();
+}
