@@ -33,7 +33,7 @@ static const struct tag {
     {"vector", TAG_VALUE, "!name value x y z "},
     {"rgb", TAG_VALUE, "!name !value intent "},
     {"srgb", TAG_VALUE, "!name !value intent "},
-    {"spectrum", TAG_VALUE, "!name value filename type id intent "},
+    {"spectrum", TAG_VALUE, "name value filename type id intent "},
     {"blackbody", TAG_VALUE, "!name !temperature scale "},
     {"transform", TAG_VALUE, "!name "},
     {"translate", TAG_VALUE, "value x y z "},

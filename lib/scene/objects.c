@@ -145,7 +145,8 @@ static bool fill_object(struct fill *f, struct xml_node *child, child_fn other, 
         return false;
     }
     if (p)
-        return claim(f, p, child) && param_read_object(f->r, target, entry, p, f->data);
+        return claim(f, p, child) &&
+               param_read_object(f->r, child->at, target, entry, p, f->data);
     if (other)
         return other(f->r, child, target, entry, ctx);
     if (name || f->drop_unknown)

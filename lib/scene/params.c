@@ -187,8 +187,8 @@ bool param_read_value(struct reader *r, const struct xml_node *node, const struc
     return false;
 }
 
-static bool read_colour_object(struct reader *r, struct xml_node *target, struct id_entry *entry,
-                               const struct param *p, void *data) {
+static bool read_colour_object(struct reader *r, struct where at, struct xml_node *target,
+                               struct id_entry *entry, const struct param *p, void *data) {
     const struct registry *registry = r->options->registries.textures;
     const char *type = xml_get(target, "type");
     const bool is_spectrum = has_tag(target, "spectrum") ||
@@ -199,7 +199,7 @@ static bool read_colour_object(struct reader *r, struct xml_node *target, struct
         return out->texture != NULL;
     }
     if (!is_spectrum) {
-        log_error_at(target->at, "\"%s\" is the same everywhere and takes no texture", p->name);
+        log_error_at(at, "\"%s\" is the same everywhere and takes no texture", p->name);
         return false;
     }
     if (!object_enter(r, target, entry))
@@ -209,8 +209,8 @@ static bool read_colour_object(struct reader *r, struct xml_node *target, struct
     return ok;
 }
 
-bool param_read_object(struct reader *r, struct xml_node *target, struct id_entry *entry,
-                       const struct param *p, void *data) {
+bool param_read_object(struct reader *r, struct where at, struct xml_node *target,
+                       struct id_entry *entry, const struct param *p, void *data) {
     if (p->type == PARAM_BSDF) {
         const struct object *o =
             object_shared(r, r->options->registries.bsdfs, &r->bsdfs, target, entry);
@@ -222,7 +222,7 @@ bool param_read_object(struct reader *r, struct xml_node *target, struct id_entr
         *(const struct object **)place(p, data) = o;
         return o != NULL;
     }
-    return read_colour_object(r, target, entry, p, data);
+    return read_colour_object(r, at, target, entry, p, data);
 }
 
 bool param_accepts(const struct param *p, const struct xml_node *target) {
@@ -266,6 +266,6 @@ bool param_read_default(struct reader *r, const struct xml_node *owner, const st
     const bool object = p->type == PARAM_BSDF || p->type == PARAM_INTEGRATOR ||
                         (param_is_colour(p->type) && has_tag(node, "spectrum"));
     xml_set(node, object ? "type" : "value", p->def, r->arena);
-    return object ? param_read_object(r, node, NULL, p, data)
+    return object ? param_read_object(r, owner->at, node, NULL, p, data)
                   : param_read_value(r, node, p, data);
 }

@@ -274,6 +274,10 @@ static struct xml_node *default_node(struct reader *r, const char *tag, const ch
 
 bool view_defaults(struct reader *r) {
     struct scene *s = r->scene;
+    if (r->sensors.count == 0) {
+        log_error("%s: the scene has no sensor", s->path);
+        return false;
+    }
     if (s->film.width == 0 && !film_read(r, default_node(r, "film", "hdrfilm"), true))
         return false;
     if (!s->sampler && !sampler_read(r, default_node(r, "sampler", "sobol"), true))
