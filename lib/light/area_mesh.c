@@ -6,9 +6,6 @@
 #include "light/solid_angle.h"
 #include "math/warp.h"
 
-// gamma_6 of the barycentric interpolation (Pharr, Jakob, Humphreys 2023, 6.8.4).
-static const float INTERPOLATION_ERROR = 6 * 0x1p-24f / (1 - 6 * 0x1p-24f);
-
 static vec3 vertex(const struct mesh *m, uint32_t triangle, uint32_t corner) {
     return v3_load(m->positions[m->indices[triangle][corner % 3]]);
 }
@@ -127,16 +124,14 @@ static void fill_texture_point(const struct mesh *m, uint32_t triangle, struct v
     at->uv.y = b0 * t0[1] + b.x * t1[1] + b.y * t2[1];
 }
 
-static vec3 absolute(vec3 a) {
-    return v3(fabsf(a[0]), fabsf(a[1]), fabsf(a[2]));
-}
-
 static void place_on_triangle(const struct area_mesh *a, uint32_t triangle, struct vec2 b,
                               struct light_sample *s, struct texture_point *at) {
     const vec3 p0 = (1 - b.x - b.y) * vertex(a->mesh, triangle, 0);
     const vec3 p1 = b.x * vertex(a->mesh, triangle, 1), p2 = b.y * vertex(a->mesh, triangle, 2);
     s->p = p0 + p1 + p2;
-    s->p_error = INTERPOLATION_ERROR * (absolute(p0) + absolute(p1) + absolute(p2));
+    const vec3 origin = vertex(a->mesh, triangle, 0);
+    s->p_error = triangle_error(p0, p1, p2, vertex(a->mesh, triangle, 1) - origin,
+                                vertex(a->mesh, triangle, 2) - origin);
     s->n = a->kind == POLYGON_MESH ? emitting_normal(a, triangle) : a->n;
     if (at)
         fill_texture_point(a->mesh, triangle, b, at);

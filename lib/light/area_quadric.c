@@ -74,10 +74,6 @@ bool area_quadric_init(struct area_quadric *q, const struct shape *shape) {
     return q->area > 0 && q->area < INFINITY;
 }
 
-static vec3 absolute(vec3 a) {
-    return v3(fabsf(a[0]), fabsf(a[1]), fabsf(a[2]));
-}
-
 static void fill_texture_point(const struct area_quadric *q, vec3 object,
                                struct texture_point *at) {
     const double p[3] = {object[0], object[1], object[2]};

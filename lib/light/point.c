@@ -13,7 +13,7 @@ struct point {
 static const struct param params[] = {
     {"to_world", PARAM_TRANSFORM, offsetof(struct point, to_world), .def = "", .unit = "",
      .help = "light to world"},
-    {"position", PARAM_POINT, offsetof(struct point, position), .def = "0 0 0", .unit = "m",
+    {"position", PARAM_POINT, offsetof(struct point, position), .def = "0,0,0", .unit = "m",
      .help = "where it stands, before to_world"},
     {"intensity", PARAM_EMISSION, offsetof(struct point, intensity), .def = "1", .min = 0,
      .max = 1e30, .unit = "W/sr", .help = "power per solid angle"},

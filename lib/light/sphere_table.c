@@ -58,7 +58,7 @@ static struct patch patch_weights(const struct sphere_table *t, int x, int y) {
     struct patch p;
     for (int i = 0; i < 4; i++) {
         const float lum = spectrum_luminance(colour(texel(t, x + (i & 1), y + (i >> 1))) * t->unit);
-        p.w[i] = lum * t->row_sine[y + (i >> 1)];
+        p.w[i] = lum * t->row_weight[y + (i >> 1)];
     }
     p.mean = 0.25f * (p.w[0] + p.w[1] + p.w[2] + p.w[3]);
     return p;
@@ -81,19 +81,22 @@ static void copy_texels(struct sphere_table *t, const float *rgb, int width, int
     t->unit = t->black ? 1 : 1 / largest;
 }
 
-static void init_sines(struct sphere_table *t) {
-    t->row_sine = mem_array((size_t)t->height, sizeof *t->row_sine);
-    const double step = M_PI / (t->height - 1);
+// The integral of sine times a row's hat function is sine times 2 (1 - cos D) / D at distance D of
+// the rows, and 1 - sin D / D for the half hat of a pole, which lies in half as many patches.
+// Returns the former's factor.
+static double init_rows(struct sphere_table *t) {
+    t->row_weight = mem_array((size_t)t->height, sizeof *t->row_weight);
+    const double step = M_PI / (t->height - 1), hat = 2 * (1 - cos(step)) / step;
     for (int y = 0; y < t->height; y++)
-        t->row_sine[y] = (float)sin(y * step);
-    const float pole = t->height > 2 ? (float)(0.25 * sin(step)) : 1;
-    t->row_sine[0] = t->row_sine[t->height - 1] = pole;
+        t->row_weight[y] = (float)sin(y * step);
+    t->row_weight[0] = t->row_weight[t->height - 1] = (float)(2 * (1 - sin(step) / step) / hat);
+    return hat;
 }
 
 void sphere_table_init(struct sphere_table *t, const float *rgb, int width, int height) {
     *t = (struct sphere_table){0};
     copy_texels(t, rgb, width, height);
-    init_sines(t);
+    const double hat = init_rows(t);
     const int patch_rows = t->height - 1;
     t->rows = mem_array((size_t)patch_rows + 1, sizeof *t->rows);
     t->columns = mem_array((size_t)patch_rows * ((size_t)width + 1), sizeof *t->columns);
@@ -108,15 +111,14 @@ void sphere_table_init(struct sphere_table *t, const float *rgb, int width, int 
         t->mean += sums[y];
     }
     grid_cdf(sums, patch_rows, t->rows);
-    // The weights hold the sine once: integral over u and v times 2 pi^2, over 4 pi.
-    t->mean *= M_PI / 2 / ((double)width * patch_rows) / (double)t->unit;
+    t->mean *= hat / (2.0 * width) / (double)t->unit;
     mem_free(row);
     mem_free(sums);
 }
 
 void sphere_table_finish(struct sphere_table *t) {
     mem_free(t->texels);
-    mem_free(t->row_sine);
+    mem_free(t->row_weight);
     mem_free(t->rows);
     mem_free(t->columns);
     *t = (struct sphere_table){0};

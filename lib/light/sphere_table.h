@@ -5,8 +5,9 @@
 // Conventions: local directions with y up; u runs once around it, 0 at -z and a quarter at +x; v
 // runs from 0 at +y to 1 at -y. Texel (x, y) of a width x height picture stands at
 // u = (x + 1/2) / width, v = y / (height - 1): the first and last row are the poles (as Mitsuba).
-// Density: bilinear between (luminance x sine of the row's angle) at the four texels of a patch,
-// where the poles' sine counts as a quarter of the next row's so that no light is out of reach.
+// Density: bilinear between (luminance x weight of the row) at the four texels of a patch. A row's
+// weight is its share of the sphere's integral: the sine of its angle, but at the poles about a
+// third of the next row's sine, so that no light is out of reach.
 #pragma once
 
 #include "math/vec.h"
@@ -14,7 +15,7 @@
 struct sphere_table {
     int width, height;   // height >= 2
     float (*texels)[3];  // (width + 1) x height, last column as the first; owned
-    float *row_sine;     // height
+    float *row_weight;   // height; owned
     float unit;          // 1 / largest luminance: keeps products in range
     float *rows;         // cdf of the height - 1 rows of patches; owned
     float *columns;      // cdf of the patches of each row, width + 1 values each; owned
