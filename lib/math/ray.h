@@ -9,6 +9,26 @@ struct ray {
     float tmin, tmax; // open interval that is searched
 };
 
+static inline vec3 absolute(vec3 a) {
+    return v3(fabsf(a[0]), fabsf(a[1]), fabsf(a[2]));
+}
+
+static inline float largest(vec3 a) {
+    return fmaxf(fabsf(a[0]), fmaxf(fabsf(a[1]), fabsf(a[2])));
+}
+
+// Bound per axis on the distance between a point w0 + w1 + w2 interpolated on a triangle with edges
+// e1, e2 (w: weighted vertices) and where a ray traced in single precision meets the triangle. The
+// first term bounds the interpolation, gamma(7) of Pharr, Jakob, Humphreys 2023 (6.8); the second
+// the ray tracer's own differences of positions, which grow with the triangle and are there even
+// where the interpolation is exact (a plane y = 0).
+static inline vec3 triangle_error(vec3 w0, vec3 w1, vec3 w2, vec3 e1, vec3 e2) {
+    const float u = 0x1p-24f;
+    const float extent = 3 * u * fmaxf(largest(e1), largest(e2));
+    return 7 * u / (1 - 7 * u) * (absolute(w0) + absolute(w1) + absolute(w2)) +
+           v3(extent, extent, extent);
+}
+
 // Moves p off its surface to the side of n that w points to, far enough that p's rounding error
 // (absolute, per axis) cannot put it on the other side (Pharr, Jakob, Humphreys 2023, 6.8.6).
 static inline vec3 offset_point(vec3 p, vec3 error, vec3 n, vec3 w) {

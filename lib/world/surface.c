@@ -7,11 +7,6 @@
 #include "world/world.h"
 
 static const float GAMMA_3 = 3 * 0x1p-24f / (1 - 3 * 0x1p-24f);
-static const float GAMMA_7 = 7 * 0x1p-24f / (1 - 7 * 0x1p-24f);
-
-static vec3 vabs(vec3 a) {
-    return v3(fabsf(a[0]), fabsf(a[1]), fabsf(a[2]));
-}
 
 // dp/du and dp/dv of a triangle; zero where its texture coordinates are degenerate.
 static void triangle_derivatives(const struct mesh *m, const uint32_t i[3], vec3 e1, vec3 e2,
@@ -36,7 +31,7 @@ static void triangle_surface(const struct shape *shape, const struct accel_hit *
     const float b1 = hit->u, b2 = hit->v, b0 = 1 - b1 - b2;
     const vec3 e1 = p1 - p0, e2 = p2 - p0;
     s->p = b0 * p0 + b1 * p1 + b2 * p2;
-    s->p_error = GAMMA_7 * (vabs(b0 * p0) + vabs(b1 * p1) + vabs(b2 * p2));
+    s->p_error = triangle_error(b0 * p0, b1 * p1, b2 * p2, e1, e2);
     s->ng = normalize(cross(e1, e2));
     vec3 ns = s->ng;
     if (m->normals) {
@@ -71,7 +66,7 @@ static void quadric_shading(enum shape_kind kind, const struct world_transform *
     quadric_surface(kind, p, n, uv, du, dv);
     transform_point(&x->to_world, p, world);
     s->p = to_vec3(world);
-    s->p_error = GAMMA_3 * vabs(s->p);
+    s->p_error = GAMMA_3 * absolute(s->p) + x->error;
     transform_normal(&x->to_object, n, v);
     s->ng = normalize(to_vec3(v));
     transform_vector(&x->to_world, du, v);
@@ -85,9 +80,9 @@ static void quadric_shading(enum shape_kind kind, const struct world_transform *
 // Takes a surface from its group's space into the world.
 static void apply_instance(const struct world_transform *x, struct surface *s) {
     const struct affine *m = &x->forward;
-    const struct affine size = {vabs(m->x), vabs(m->y), vabs(m->z), vabs(m->o)};
+    const struct affine size = {absolute(m->x), absolute(m->y), absolute(m->z), absolute(m->o)};
     s->p_error = (GAMMA_3 + 1) * affine_vector(&size, s->p_error) +
-                 GAMMA_3 * affine_point(&size, vabs(s->p));
+                 GAMMA_3 * affine_point(&size, absolute(s->p));
     s->p = affine_point(m, s->p);
     s->ng = normalize(affine_normal(&x->inverse, s->ng));
     s->point.frame.n = normalize(affine_normal(&x->inverse, s->point.frame.n));

@@ -77,6 +77,7 @@ static bool init_transform(struct world_transform *t, const struct transform *to
     }
     t->forward = affine_from(&t->to_world);
     t->inverse = affine_from(&t->to_object);
+    t->error = 0x1p-23f * (absolute(t->forward.x) + absolute(t->forward.y) + absolute(t->forward.z));
     return true;
 }
 

@@ -19,6 +19,7 @@ struct world_light {
 struct world_transform {
     struct transform to_world, to_object;
     struct affine forward, inverse; // the same in single precision
+    vec3 error; // rounding of positions that grows with the size of a quadric
 };
 
 struct world {
