@@ -253,6 +253,10 @@ static struct xml_node *load_file(struct reader *r, const char *path,
     struct xml_node *root = xml_parse(data, size, path, r->arena, &r->node_count);
     mem_free(data);
     bool old = false;
+    if (root && !includer && strcmp(root->tag, "scene") != 0) {
+        log_error_at(root->at, "the outermost element is <%s>, expected <scene>", root->tag);
+        return NULL;
+    }
     if (!root || !check_version(root, includer, &old))
         return NULL;
     mark_old(root, old);
@@ -360,11 +364,5 @@ struct xml_node *load_scene_tree(struct reader *r, const char *path) {
         *LIST_ADD(&r->variables, struct variable) = (struct variable){
             r->options->defines[i].name, r->options->defines[i].value, false, true};
     struct xml_node *root = load_file(r, path, NULL, NULL);
-    if (!root || !all_variables_used(r))
-        return NULL;
-    if (strcmp(root->tag, "scene") != 0) {
-        log_error_at(root->at, "the outermost element is <%s>, expected <scene>", root->tag);
-        return NULL;
-    }
-    return root;
+    return root && all_variables_used(r) ? root : NULL;
 }
