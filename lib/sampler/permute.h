@@ -9,7 +9,8 @@
 
 // A bijection of [0, mask], mask + 1 a power of two: every step can be undone modulo mask + 1.
 static inline uint32_t permute_mix(uint32_t i, uint32_t mask, uint32_t seed) {
-    const uint32_t s1 = seed, s2 = hash_u32(seed), s3 = hash_u32(seed ^ 0x68e31da4u);
+    const uint32_t s1 = seed, s2 = (uint32_t)(seed * 0x9e3779b97f4a7c15u >> 32);
+    const uint32_t s3 = (uint32_t)(seed * 0xd1342543de82ef95u >> 32);
     const int half = (33 - __builtin_clz(mask)) / 2; // at least 1
     for (int round = 0; round < 2; round++) {
         i = (i ^ s1) * (s2 | 1) & mask;

@@ -19,6 +19,7 @@ struct sampler {
     uint32_t index;     // point number inside the replicate
     uint32_t count;     // points a replicate will have in all (stratified kinds need it); >= 1
     uint32_t dimension; // next dimension
+    uint32_t reversed;  // bits of index, mirrored
 };
 
 struct sampler_type {
@@ -44,6 +45,13 @@ struct sampler_settings {
 
 extern const struct registry samplers;
 
+static inline uint32_t reverse_bits(uint32_t x) {
+    x = __builtin_bswap32(x);
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+}
+
 // spp: samples the pixel will have in all; replicates: power of two, at most 16.
 static inline struct sampler sampler_start(const struct sampler_type *type, uint32_t x, uint32_t y,
                                            uint32_t sample, uint32_t spp, uint32_t replicates,
@@ -51,7 +59,8 @@ static inline struct sampler sampler_start(const struct sampler_type *type, uint
     const uint32_t replicate = sample % replicates;
     const uint32_t h = hash_combine(hash_combine(hash_combine(seed, x), y), replicate);
     const uint32_t count = (spp + replicates - 1) / replicates;
-    return (struct sampler){type, h, sample / replicates, count ? count : 1, 0};
+    const uint32_t index = sample / replicates;
+    return (struct sampler){type, h, index, count ? count : 1, 0, reverse_bits(index)};
 }
 
 static inline float sampler_1d(struct sampler *s) {

@@ -18,16 +18,12 @@ static const struct param params[] = {
 
 static const char *const aliases[] = {"ldsampler", "halton", "hammersley", "orthogonal", NULL};
 
-// Each half on its own when x holds two words: the halves change places, too.
-static uint64_t reverse_bits(uint64_t x) {
+// Two words at once; they change places.
+static uint64_t reverse_both(uint64_t x) {
     x = __builtin_bswap64(x);
     x = (x >> 4 & 0x0f0f0f0f0f0f0f0fu) | (x & 0x0f0f0f0f0f0f0f0fu) << 4;
     x = (x >> 2 & 0x3333333333333333u) | (x & 0x3333333333333333u) << 2;
     return (x >> 1 & 0x5555555555555555u) | (x & 0x5555555555555555u) << 1;
-}
-
-static uint32_t reverse_bits_u32(uint32_t x) {
-    return (uint32_t)(reverse_bits(x) >> 32);
 }
 
 // Owen scramble of a reversed word.
@@ -63,13 +59,13 @@ static struct seeds next_seeds(struct sampler *s) {
 
 // This dimension's order of the points: the index is scrambled as if it were a point.
 static uint32_t shuffled_index(const struct sampler *s, uint32_t seed) {
-    return reverse_bits_u32(scramble_reversed(reverse_bits_u32(s->index), seed));
+    return reverse_bits(scramble_reversed(s->reversed, seed));
 }
 
 static float next_1d(struct sampler *s) {
     const struct seeds k = next_seeds(s);
     const uint32_t index = shuffled_index(s, k.order);
-    return uniform_float(reverse_bits_u32(scramble_reversed(index, k.x)));
+    return uniform_float(reverse_bits(scramble_reversed(index, k.x)));
 }
 
 static struct vec2 next_2d(struct sampler *s) {
@@ -78,7 +74,7 @@ static struct vec2 next_2d(struct sampler *s) {
     // The first dimension is the reversed index, so its reversal is the index itself.
     const uint32_t x = scramble_reversed(index, k.x);
     const uint32_t y = scramble_reversed(second_dimension_reversed(index), k.y);
-    const uint64_t both = reverse_bits((uint64_t)x << 32 | y);
+    const uint64_t both = reverse_both((uint64_t)x << 32 | y);
     return (struct vec2){uniform_float((uint32_t)both), uniform_float((uint32_t)(both >> 32))};
 }
 

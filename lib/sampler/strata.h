@@ -19,7 +19,7 @@ static inline struct strata_seeds strata_next(struct sampler *s) {
 }
 
 static inline float strata_inside(uint32_t stratum, float jitter, uint32_t count) {
-    return fminf(((float)stratum + jitter) / (float)count, 0x1.fffffep-1f);
+    return minf(((float)stratum + jitter) / (float)count, 0x1.fffffep-1f);
 }
 
 // Integer part of the square root: columns of the grid.
