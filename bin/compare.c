@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/log.h"
+#include "image/comparison.h"
+#include "image/comparison_report.h"
+#include "subcommand.h"
+
+struct compare_options {
+    struct comparison_request request;
+    int map;
+    struct option_list limits;
+    bool json;
+};
+
+static int run(const void *values, const char *command) {
+    const struct compare_options *o = values;
+    struct comparison_request request = o->request;
+    struct comparison c = {0};
+    bool exceeded;
+    (void)command;
+    for (size_t i = 0; i < o->limits.count; i++) // their form, before the work
+        if (!comparison_check_limit(o->limits.items[i], &c, &exceeded))
+            return EXIT_USAGE;
+    request.map = (enum comparison_map)o->map;
+    if (!comparison_run(&request, &c))
+        return EXIT_FAILED;
+    if (o->json)
+        comparison_print_json(&c);
+    else
+        comparison_print(&c);
+    int code = c.tested && !c.ztest.pass ? EXIT_FAILED : EXIT_DONE;
+    for (size_t i = 0; i < o->limits.count; i++) {
+        comparison_check_limit(o->limits.items[i], &c, &exceeded);
+        if (exceeded)
+            log_error("%s: exceeds the limit %s", o->request.test, o->limits.items[i]);
+        code = exceeded ? EXIT_FAILED : code;
+    }
+    return code;
+}
+
+#define AT(member) offsetof(struct compare_options, member)
+static const struct option_spec options[] = {
+    {.name = "ztest", .type = OPTION_TEXT, .offset = AT(request.variance), .argument = "VAR.exr",
+     .help = "variance of REF's single-sample estimates: also test whether the pictures agree\n"
+             "within their noise, by pixels, 8x8 blocks and means; exit 1 if not"},
+    {.name = "samples", .type = OPTION_NUMBER, .offset = AT(request.samples), .argument = "N",
+     .help = "TEST's samples per pixel, for --ztest; 0: what the file says", .def = "0", .min = 0,
+     .max = 1e15},
+    {.name = "ref-samples", .type = OPTION_NUMBER, .offset = AT(request.ref_samples),
+     .argument = "N", .help = "REF's samples per pixel, for --ztest", .def = "32000", .min = 1,
+     .max = 1e15},
+    {.name = "map", .type = OPTION_TEXT, .offset = AT(request.map_path), .argument = "OUT.png",
+     .help = "write a picture of the difference"},
+    {.name = "map-kind", .type = OPTION_CHOICE, .offset = AT(map), .argument = "KIND",
+     .help = "HDR-FLIP in magma, or (test-ref)/ref with red above and blue below", .def = "flip",
+     .choices = comparison_map_names},
+    {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",
+     .help = "exit 1 if METRIC is above X: mean (|ratio - 1|), mse, relmse, flip, ldr-flip,\n"
+             "ssim (1 - SSIM), psnr (-PSNR)"},
+    {.name = "eps", .type = OPTION_NUMBER, .offset = AT(request.eps), .argument = "E",
+     .help = "relMSE divides by ref^2 + E; -1: 1e-3 of the squared mean of REF", .def = "-1",
+     .min = -1, .max = 1e30},
+    {.name = "exposure", .type = OPTION_NUMBER, .offset = AT(request.exposure),
+     .argument = "STOPS", .help = "exposure at which PSNR, SSIM and LDR-FLIP look", .def = "0",
+     .min = -60, .max = 60},
+    {.name = "ppd", .type = OPTION_NUMBER, .offset = AT(request.pixels_per_degree),
+     .argument = "N", .help = "pixels per degree of the viewer of FLIP", .def = "67.0206432765823",
+     .min = 1, .max = 3700},
+    {.name = "downsample", .type = OPTION_INT, .offset = AT(request.downsample), .argument = "N",
+     .help = "first average NxN boxes: of the larger picture, or of both if equal", .def = "1",
+     .min = 1, .max = 4096},
+    OPTION_THREADS(struct compare_options, request.threads),
+    OPTION_JSON(struct compare_options, json),
+    OPTION_END,
+};
+
+static const struct option_argument arguments[] = {
+    {.name = "REF", .offset = AT(request.ref), .help = "the picture that is taken as true"},
+    {.name = "TEST", .offset = AT(request.test), .help = "the picture to measure"},
+    {.name = NULL},
+};
+
+const struct subcommand subcommand_compare = {
+    .entry = {.name = "compare", .help = "measure how far a picture is from its reference",
+              .size = sizeof(struct compare_options)},
+    .options =
+        {.options = options,
+         .arguments = arguments,
+         .description = "Where a file has a layer `variance` (render --variance), each value comes "
+                        "with the 95 %\nconfidence interval that this noise leaves it. A crop is "
+                        "compared with its part of REF.",
+         .examples = "  relume compare ref.exr out.exr --map difference.png\n"
+                     "  relume compare ref.exr out.exr --ztest ref_var.exr --samples 868\n"
+                     "  relume compare big.exr out.exr --downsample 2 --fail-above relmse=0.001\n"},
+    .run = run,
+};
