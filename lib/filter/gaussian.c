@@ -20,7 +20,7 @@ static bool prepare(struct object *self, float *radius) {
 static float eval(const void *data, float x) {
     const float t = x / ((const struct gaussian *)data)->stddev;
     const float edge = 3.3546262790251185e-4f; // exp(-8), the value at 4 standard deviations
-    return fmaxf(0, expf(-0.5f * t * t) - edge);
+    return maxf(expf(-0.5f * t * t) - edge, 0);
 }
 
 const struct filter_type filter_gaussian = {

@@ -19,7 +19,7 @@ static bool prepare(struct object *self, float *radius) {
 }
 
 static float eval(const void *data, float x) {
-    return fmaxf(0, 1 - fabsf(x) / ((const struct tent *)data)->radius);
+    return maxf(1 - fabsf(x) / ((const struct tent *)data)->radius, 0);
 }
 
 const struct filter_type filter_tent = {

@@ -137,7 +137,7 @@ static vec3 seen_point(vec3 axis, float sin2_max, struct vec2 u) {
     const float sin_alpha = safe_sqrt(1 - cos_alpha * cos_alpha);
     const struct frame f = frame_from_normal(axis);
     const float phi = TWO_PI * u.y;
-    return to_world(&f, v3(sin_alpha * cosf(phi), sin_alpha * sinf(phi), fminf(cos_alpha, 1)));
+    return to_world(&f, v3(sin_alpha * cosf(phi), sin_alpha * sinf(phi), minf(cos_alpha, 1)));
 }
 
 static void place_on_sphere(const struct area_quadric *q, vec3 outwards, struct light_sample *s,

@@ -51,7 +51,7 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
 
 static float power(const void *data) {
     const struct directional *d = data;
-    return fminf(PI * d->radius * d->radius * spectrum_luminance(d->irradiance), FLT_MAX);
+    return minf(PI * d->radius * d->radius * spectrum_luminance(d->irradiance), FLT_MAX);
 }
 
 const struct light_type light_directional = {

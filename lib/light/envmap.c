@@ -36,7 +36,7 @@ static size_t repair(struct image *rgb) {
         bool good = true;
         for (int k = 0; k < 3; k++) {
             const bool lane_good = c[k] >= 0 && c[k] < INFINITY;
-            c[k] = lane_good ? fminf(c[k], 1e30f) : 0;
+            c[k] = lane_good ? minf(c[k], 1e30f) : 0;
             good = good && lane_good;
         }
         bad += !good;

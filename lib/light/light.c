@@ -13,7 +13,7 @@ static const struct entry *const entries[] = {
 const struct registry lights = {"light", entries};
 
 float light_power_infinite(float mean_radiance, float radius) {
-    return fminf(4 * PI * PI * radius * radius * mean_radiance, FLT_MAX);
+    return minf(4 * PI * PI * radius * radius * mean_radiance, FLT_MAX);
 }
 
 vec3 light_position(const struct transform *to_world, vec3 local, const struct light_scene *scene) {

@@ -75,7 +75,7 @@ static void copy_texels(struct sphere_table *t, const float *rgb, int width, int
         memcpy(to, from, (size_t)width * sizeof *to);
         memcpy(to[width], to[0], sizeof *to);
         for (int x = 0; x < width; x++)
-            largest = fmaxf(largest, spectrum_max(colour(to[x])));
+            largest = maxf(largest, spectrum_max(colour(to[x])));
     }
     t->black = !(largest > 0);
     t->unit = t->black ? 1 : 1 / largest;
@@ -138,7 +138,7 @@ static struct place place_of(const struct sphere_table *t, vec3 w) {
     const float u = (turn < 0 ? turn + 1 : turn) * (float)t->width - 0.5f;
     const float v = atan2f(sine, w[1]) * INV_PI * (float)(t->height - 1);
     const float wrapped = u < 0 ? u + (float)t->width : u;
-    struct place p = {.x = (int)wrapped, .y = (int)v, .sine = fmaxf(sine, SMALLEST_SINE)};
+    struct place p = {.x = (int)wrapped, .y = (int)v, .sine = maxf(sine, SMALLEST_SINE)};
     p.x = p.x < t->width ? p.x : t->width - 1;
     p.y = p.y < t->height - 1 ? p.y : t->height - 2;
     p.fx = clampf(wrapped - (float)p.x, 0, 1);
@@ -179,18 +179,18 @@ float sphere_table_pdf_sa(const struct sphere_table *t, vec3 w) {
 
 // Where a density that runs linearly from a to b over the unit interval puts u.
 static float sample_linear(float u, float a, float b) {
-    const float largest = fmaxf(a, b);
+    const float largest = maxf(a, b);
     if (!(largest > 0))
         return u;
     a /= largest;
     b /= largest;
-    return fminf(u * (a + b) / (a + sqrtf(lerpf(u, a * a, b * b))), 1);
+    return minf(u * (a + b) / (a + sqrtf(lerpf(u, a * a, b * b))), 1);
 }
 
 // The number's place inside its interval. An interval may be a few steps of the grid wide; bits
 // below the grid are made up from both numbers, so that places inside stay continuous.
 static float inside(const float *cdf, int i, float u, float below) {
-    return fminf((u - cdf[i] + below * GRID) / (cdf[i + 1] - cdf[i]), 1);
+    return minf((u - cdf[i] + below * GRID) / (cdf[i + 1] - cdf[i]), 1);
 }
 
 bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, float *pdf_sa,
@@ -210,7 +210,7 @@ bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, f
     const float theta = PI * ((float)p.y + p.fy) / (float)(t->height - 1);
     const float phi = TWO_PI * ((float)p.x + p.fx + 0.5f) / (float)t->width;
     const float sine = sinf(theta);
-    p.sine = fmaxf(sine, SMALLEST_SINE);
+    p.sine = maxf(sine, SMALLEST_SINE);
     *w = v3(sinf(phi) * sine, cosf(theta), -cosf(phi) * sine);
     *pdf_sa = density(t, &p, &c);
     *value = interpolate(t, &p);

@@ -92,7 +92,7 @@ static spectrum radiance(const struct sunsky *s, vec3 w) {
     if (s->dark || !(w[2] >= 0))
         return spectrum_grey(0);
     const float height = height_from_sun(s, w);
-    const float gamma = 2 * asinf(fminf(sqrtf(0.5f * height), 1));
+    const float gamma = 2 * asinf(minf(sqrtf(0.5f * height), 1));
     spectrum sum = s->sky_factor * sky_model_eval(&s->sky, w[2], gamma);
     if (height <= s->cone_height)
         sum += sun_radiance(s, w, gamma);
@@ -117,7 +117,7 @@ static double init_table(struct sunsky *s) {
             for (int i = 0; i < 4; i++) {
                 const vec3 w = cell_direction((float)y + 0.25f + 0.5f * (float)(i / 2),
                                               (float)x + 0.25f + 0.5f * (float)(i % 2));
-                const float gamma = 2 * asinf(fminf(0.5f * length(w - s->sun.n), 1));
+                const float gamma = 2 * asinf(minf(0.5f * length(w - s->sun.n), 1));
                 weights[y][x] += 0.25f * spectrum_luminance(sky_model_eval(&s->sky, w[2], gamma));
             }
             total += (double)weights[y][x];
@@ -239,7 +239,7 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
     if (s->dark)
         return false;
     const bool sky = u.x < s->sky_share;
-    u.x = fminf(sky ? u.x / s->sky_share : (u.x - s->sky_share) / (1 - s->sky_share),
+    u.x = minf(sky ? u.x / s->sky_share : (u.x - s->sky_share) / (1 - s->sky_share),
                 0x1.fffffep-1f);
     const vec3 w = normalize(sky ? sample_sky(s, u) : cone_direction(s, u));
     *out = (struct light_sample){.wi = affine_vector(&s->world, w), .distance = INFINITY,
