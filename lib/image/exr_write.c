@@ -123,8 +123,13 @@ static bool write_chunks(struct writer *w, int threads) {
         for (int i = 0; i < n && !atomic_load(&w->failed); i++) {
             const int y = w->first_line + (w->first_chunk + i) * w->lines_per_chunk;
             const exr_encode_pipeline_t *p = &w->pipelines[i];
-            if (exr_write_scanline_chunk(w->context, 0, y, p->compressed_buffer,
-                                         p->compressed_bytes) != EXR_ERR_SUCCESS)
+            // Readers take a chunk of its full size for an uncompressed one; OpenEXRCore 3.1.5
+            // hands out a compressed one where the two sizes are equal.
+            const bool packs = p->compressed_bytes < p->packed_bytes;
+            if (exr_write_scanline_chunk(w->context, 0, y,
+                                         packs ? p->compressed_buffer : p->packed_buffer,
+                                         packs ? p->compressed_bytes : p->packed_bytes) !=
+                EXR_ERR_SUCCESS)
                 atomic_store(&w->failed, true);
         }
         if (atomic_load(&w->failed))
