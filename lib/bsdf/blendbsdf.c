@@ -71,7 +71,7 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
     const struct blend_data *c = (const void *)closure;
     const int i = u1 < c->weight[1];
     const float u = i ? u1 / c->weight[1] : (u1 - c->weight[1]) / c->weight[0];
-    if (!c->child[i] || !closure_sample(c->child[i], fminf(u, 0x1.fffffep-1f), u2, s))
+    if (!c->child[i] || !closure_sample(c->child[i], minf(u, 0x1.fffffep-1f), u2, s))
         return false;
     const float own = s->pdf_sa * c->weight[i];
     if (s->lobe & LOBE_DELTA) {

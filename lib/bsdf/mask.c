@@ -66,7 +66,7 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
                                   LOBE_NULL | LOBE_TRANSMISSION};
         return true;
     }
-    const float u = fminf(u1 / c->opacity, 0x1.fffffep-1f);
+    const float u = minf(u1 / c->opacity, 0x1.fffffep-1f);
     if (!c->child || !closure_sample(c->child, u, u2, s))
         return false;
     s->pdf_sa *= c->opacity;

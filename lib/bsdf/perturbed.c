@@ -40,7 +40,7 @@ const struct closure *perturbed_resolve(const struct perturbation *p, const stru
     c->wo = wo;
     // A normal seldom looks straight at the horizon; where it does, everything is shadowed.
     const float tan2 = f.n[2] != 0 ? tan2_theta(f.n) : INFINITY;
-    c->shadowing = p->use_shadowing_function ? fminf(0.125f * tan2, 1) : 0;
+    c->shadowing = p->use_shadowing_function ? minf(0.125f * tan2, 1) : 0;
     return &c->head;
 }
 

@@ -62,7 +62,7 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     const spectrum T = texture_eval(&self->transmittance, &point->at);
     struct microfacet facets;
     if (!roughness_at(&self->roughness, &point->at, &facets) ||
-        fmaxf(facets.alpha_u, facets.alpha_v) * fabsf(eta - 1) < SPREAD_MIN)
+        maxf(facets.alpha_u, facets.alpha_v) * fabsf(eta - 1) < SPREAD_MIN)
         return dielectric_closure(eta, R, T, wo, stack);
     if (cos_theta(wo) == 0)
         return NULL;

@@ -21,5 +21,5 @@ uint32_t roughness_lobes(const struct roughness *r) {
     const struct texture_ref *u = pair ? &r->alpha_u : &r->alpha, *v = pair ? &r->alpha_v : u;
     if (u->texture || v->texture)
         return LOBE_GLOSSY | LOBE_SPECULAR;
-    return fmaxf(u->value[0], v->value[0]) >= MICROFACET_ALPHA_MIN ? LOBE_GLOSSY : LOBE_SPECULAR;
+    return maxf(u->value[0], v->value[0]) >= MICROFACET_ALPHA_MIN ? LOBE_GLOSSY : LOBE_SPECULAR;
 }

@@ -38,7 +38,7 @@ static inline bool roughness_at(const struct roughness *r, const struct texture_
         u = v = texture_eval_scalar(&r->alpha, at);
     else
         v = texture_eval_scalar(&r->alpha_v, at);
-    if (!(fmaxf(u, v) >= MICROFACET_ALPHA_MIN))
+    if (!(maxf(u, v) >= MICROFACET_ALPHA_MIN))
         return false;
     *m = microfacet_make((enum microfacet_type)r->distribution, u, v);
     return true;

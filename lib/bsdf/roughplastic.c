@@ -4,14 +4,17 @@
 //
 //     f = F D G / (4 cos_o cos_i) + base(diffuse) T(cos_o) T(cos_i) / pi
 //
-// T is what single scattering transmits from outside, tabulated before rendering.
+// T is what single scattering transmits from outside, tabulated before rendering. What the coat
+// reflects inside is a mean over 64 equally spaced cosines that counts both ends in full, as in
+// Mitsuba: 1.6 % below the integral, which makes the base 2 % darker at an index of 1.5. Reference
+// pictures show that; plastic has the integral.
 #include "bsdf/roughness.h"
 #include "bsdf/smooth.h"
 #include "math/fresnel.h"
 #include "math/quadrature.h"
 #include "math/warp.h"
 
-enum { TABLE = 128, NODES_OUTSIDE = 32, NODES_INSIDE = 48, DIRECTIONS = 24 };
+enum { TABLE = 128, NODES_OUTSIDE = 32, NODES_INSIDE = 32, DIRECTIONS = 64, OUTSIDE = 32 };
 
 struct roughplastic {
     struct dielectric_index index;
@@ -20,7 +23,7 @@ struct roughplastic {
     int distribution;
     float alpha;
     // made by prepare
-    struct plastic_coat coat;     // its fresnel_in counts the rough coat where there is one
+    struct plastic_coat coat;     // its fresnel_in is of the rough coat where there is one
     struct microfacet facets;
     bool smooth;
     float mean_transmitted;       // 2 * integral of T(c) c dc
@@ -60,7 +63,7 @@ static void tabulate_outside(struct roughplastic *self) {
     for (int i = 0; i <= TABLE; i++) {
         const float s = (float)i / TABLE;
         double r, t;
-        microfacet_albedo(&self->facets, self->coat.eta, fmaxf(s * s, 1e-6f), NODES_OUTSIDE, &r,
+        microfacet_albedo(&self->facets, self->coat.eta, maxf(s * s, 1e-6f), NODES_OUTSIDE, &r,
                           &t);
         self->reflected[i] = (float)r;
         self->transmitted[i] = (float)t;
@@ -69,21 +72,32 @@ static void tabulate_outside(struct roughplastic *self) {
 
 static float lookup(const float *table, float cosine) {
     const float x = sqrtf(cosine) * TABLE;
-    const int i = (int)fminf(x, TABLE - 1);
+    const int i = (int)minf(x, TABLE - 1);
     return lerpf(x - (float)i, table[i], table[i + 1]);
 }
 
-// Means over diffuse light of what the coat transmits from outside and reflects inside.
+// What the coat reflects inside, from direction cosine c.
+static double reflected_inside(const struct roughplastic *self, float c) {
+    double r, t;
+    float cos_t;
+    if (self->smooth)
+        return fresnel_dielectric(c, 1 / self->coat.eta, &cos_t);
+    microfacet_albedo(&self->facets, 1 / self->coat.eta, c, NODES_INSIDE, &r, &t);
+    return r;
+}
+
+// Means over diffuse light of what the coat reflects inside and transmits from outside.
 static void integrate_directions(struct roughplastic *self) {
-    double c[DIRECTIONS], w[DIRECTIONS], out = 0, in = 0;
-    gauss_legendre(DIRECTIONS, c, w);
+    double sum = 0;
     for (int i = 0; i < DIRECTIONS; i++) {
-        double r, t;
-        microfacet_albedo(&self->facets, 1 / self->coat.eta, (float)c[i], NODES_INSIDE, &r, &t);
-        in += 2 * w[i] * c[i] * r;
-        out += 2 * w[i] * c[i] * lookup(self->transmitted, (float)c[i]);
+        const double c = fmax((double)i / (DIRECTIONS - 1), 1e-6);
+        sum += c * reflected_inside(self, (float)c);
     }
-    self->coat.fresnel_in = (float)in;
+    self->coat.fresnel_in = (float)(2 * sum / DIRECTIONS);
+    double c[OUTSIDE], w[OUTSIDE], out = 0;
+    gauss_legendre(OUTSIDE, c, w);
+    for (int i = 0; i < OUTSIDE; i++)
+        out += 2 * w[i] * c[i] * lookup(self->transmitted, (float)c[i]);
     self->mean_transmitted = (float)out;
 }
 
@@ -94,13 +108,11 @@ static bool prepare(struct object *object, struct arena *arena) {
     self->facets = microfacet_make((enum microfacet_type)self->distribution, self->alpha,
                                    self->alpha);
     const float eta = self->index.int_ior / self->index.ext_ior;
-    self->coat = (struct plastic_coat){eta, (float)fresnel_dielectric_average(eta),
-                                       (float)fresnel_dielectric_average(1.0 / eta),
-                                       self->nonlinear};
-    if (!self->smooth) {
+    self->coat = (struct plastic_coat){.eta = eta, .nonlinear = self->nonlinear,
+                                       .fresnel_out = (float)fresnel_dielectric_average(eta)};
+    if (!self->smooth)
         tabulate_outside(self);
-        integrate_directions(self);
-    }
+    integrate_directions(self);
     return true;
 }
 

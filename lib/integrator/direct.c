@@ -109,7 +109,7 @@ static void trace_one(const struct direct *d, struct trace_context *ctx, int lan
         const spectrum through = type->null_transmittance
                                      ? type->null_transmittance(o->data, &s.point, wo)
                                      : spectrum_grey(0);
-        const float pass = fminf(spectrum_max(through), 1);
+        const float pass = minf(spectrum_max(through), 1);
         if (pass > 0 && sampler_1d(&sampler) < pass) {
             beta *= through / pass;
             ray.o = surface_offset(&s, ray.d);

@@ -81,7 +81,7 @@ static void first_event(struct trace_context *ctx, int i, struct lane *l, const 
 static void survive_roulette(const struct path *p, struct lane *l, float u) {
     if (l->from.depth < (uint32_t)p->rr_depth)
         return;
-    const float q = fminf(spectrum_max(l->beta) * l->eta2, 0.95f);
+    const float q = minf(spectrum_max(l->beta) * l->eta2, 0.95f);
     if (u < q)
         l->beta /= q;
     else

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "math/distribution.h"
 
-#include <math.h>
-
 #include "base/mem.h"
+#include "math/vec.h"
 
 static const float ONE_MINUS = 0x1.fffffep-1f; // largest float below 1
 
@@ -44,7 +43,7 @@ uint32_t distribution_sample(const struct distribution *d, float u, float *pmf, 
     const float width = d->cdf[lo + 1] - d->cdf[lo];
     *pmf = width;
     if (remapped)
-        *remapped = width > 0 ? fminf((u - d->cdf[lo]) / width, ONE_MINUS) : 0;
+        *remapped = width > 0 ? minf((u - d->cdf[lo]) / width, ONE_MINUS) : 0;
     return lo;
 }
 
@@ -87,7 +86,7 @@ uint32_t alias_sample(const struct alias_table *a, float u, float *pmf, float *r
     const float x = u * (float)a->count;
     uint32_t i = (uint32_t)x;
     i = i < a->count ? i : a->count - 1;
-    const float inside = fminf(x - (float)i, ONE_MINUS);
+    const float inside = minf(x - (float)i, ONE_MINUS);
     const struct alias_entry *e = &a->entries[i];
     const int keep = inside < e->threshold;
     const float t = keep ? inside / e->threshold : (inside - e->threshold) / (1 - e->threshold);
@@ -95,6 +94,6 @@ uint32_t alias_sample(const struct alias_table *a, float u, float *pmf, float *r
         i = e->other;
     *pmf = a->entries[i].pmf;
     if (remapped)
-        *remapped = fminf(t, ONE_MINUS);
+        *remapped = minf(t, ONE_MINUS);
     return i;
 }

@@ -12,7 +12,7 @@
 static inline float fast_exp(float x) {
     if (!(x > -87))
         return 0;
-    x = fminf(x, 88);
+    x = minf(x, 88);
     const float n = rintf(x * 1.44269504f);
     const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f;
     float p = 1.9875691500e-4f;

@@ -44,7 +44,7 @@ static inline float cos2_theta(vec3 w) {
 }
 
 static inline float sin2_theta(vec3 w) {
-    return fmaxf(0, 1 - w[2] * w[2]);
+    return maxf(1 - w[2] * w[2], 0);
 }
 
 static inline float tan2_theta(vec3 w) {

@@ -27,30 +27,30 @@ static inline float fresnel_dielectric(float cos_i, float eta, float *cos_t) {
         return 1;
     }
     const float q = sqrtf(q2), e2 = eta * eta;
-    *cos_t = fminf(q / eta, 1);
+    *cos_t = minf(q / eta, 1);
     const float s = 1 / (cos_i + q), p = 1 / (q + e2 * cos_i);
     const float r_s = d * s * s;
     const float r_p = d * (1 - c2 * (1 + e2)) * p * p;
-    return fminf(0.5f * (r_s * r_s + r_p * r_p), 1);
+    return minf(0.5f * (r_s * r_s + r_p * r_p), 1);
 }
 
 // Conductor of complex index eta + i k, lane by lane (Moeller 1988, Optics; as sums of squares:
 // (a - c)^2 + b^2 with (a + i b)^2 = (eta + i k)^2 - sin^2).
 static inline spectrum fresnel_conductor(float cos_i, spectrum eta, spectrum k) {
-    const float c = cos_i, c2 = c * c, s2 = fmaxf(1 - c2, 0);
+    const float c = cos_i, c2 = c * c, s2 = maxf(1 - c2, 0);
     const spectrum m = (eta - 1) * (eta + 1) - k * k + c2; // Re (a + i b)^2
     const spectrum ek = eta * k, ek2 = ek * ek;
     spectrum f;
     for (int i = 0; i < 4; i++) {
         const float norm = sqrtf(m[i] * m[i] + 4 * ek2[i]); // a^2 + b^2
         const float big = 0.5f * (norm + fabsf(m[i]));
-        const float small = ek2[i] / fmaxf(big, 1e-30f); // the other one, since a b = eta k
+        const float small = ek2[i] / maxf(big, 1e-30f); // the other one, since a b = eta k
         const float a2 = m[i] >= 0 ? big : small, b2 = m[i] >= 0 ? small : big;
         const float a = sqrtf(a2);
         const float am = a - c, ap = a + c, pm = c * a - s2, pp = c * a + s2;
-        const float r_s = (am * am + b2) / fmaxf(ap * ap + b2, 1e-30f);
-        const float r_p = (pm * pm + c2 * b2) / fmaxf(pp * pp + c2 * b2, 1e-30f);
-        f[i] = fminf(0.5f * r_s * (1 + r_p), 1);
+        const float r_s = (am * am + b2) / maxf(ap * ap + b2, 1e-30f);
+        const float r_p = (pm * pm + c2 * b2) / maxf(pp * pp + c2 * b2, 1e-30f);
+        f[i] = minf(0.5f * r_s * (1 + r_p), 1);
     }
     f[3] = 0;
     return f;

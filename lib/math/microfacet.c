@@ -8,7 +8,7 @@
 #include "math/quadrature.h"
 
 float erf_inverse(float x) {
-    float w = -fast_log(fmaxf((1 - x) * (1 + x), 1.2e-7f));
+    float w = -fast_log(maxf((1 - x) * (1 + x), 1.2e-7f));
     float p;
     if (w < 5) {
         w -= 2.5f;
@@ -47,44 +47,49 @@ static vec3 sample_ggx(const struct microfacet *m, vec3 v, struct vec2 u) {
     float sine, cosine;
     sincos_turn(u.x, &sine, &cosine);
     const float hx = r * cosine + s[0], hy = r * sine + s[1];
-    return normalize(v3(m->alpha_u * hx, m->alpha_v * hy, fmaxf(hz, 1e-20f)));
+    return normalize(v3(m->alpha_u * hx, m->alpha_v * hy, maxf(hz, 1e-20f)));
 }
 
 // Slope along v of a visible facet of the Beckmann surface with alpha = 1, where v has cotangent
-// c > 0 with the normal. With s = erf^-1(x), the distribution function is g(x) / g(erf c),
+// c > 0 with the normal. With s = erf^-1(x) and e = exp(-s^2), the distribution function is
+// g(x) / g(erf c),
 //
-//     g(x) = c (1 + x) + exp(-s^2) / sqrt(pi),    g'(x) = c - s
+//     g(x) = c (1 + x) + e / sqrt(pi),    g'(x) = c - s,    g''(x) = -s'(x) = -sqrt(pi) / (2 e)
 //
-// found by Newton's method inside a bracket, from the solution for grazing v (Jakob 2014, An
-// Improved Visible Normal Sampling Routine for the Beckmann Distribution; there divided by c,
-// which overflows).
+// found by Halley's method inside a bracket, from the solution for grazing v (Jakob 2014, An
+// Improved Visible Normal Sampling Routine for the Beckmann Distribution; there divided by c, which
+// overflows). The last step is taken in s: s(x + dx) = s + ds + s ds^2 + O(ds^3), ds = s' dx.
 static float sample_beckmann_slope(float c, float u) {
-    const float inv_sqrt_pi = 0.56418958f;
+    const float inv_sqrt_pi = 0.56418958f, half_sqrt_pi = 0.88622693f;
     u = clampf(u, 1e-7f, 1 - 1e-7f);
     if (c > 1e4f)
         return erf_inverse(2 * u - 1);
-    const float e = fast_exp(-c * c), end = 1 - erfc_given_exp(c, e);
-    const float total = c * (1 + end) + inv_sqrt_pi * e;
-    float lo = -1, hi = end, slope = 0;
+    const float e_end = fast_exp(-c * c), end = 1 - erfc_given_exp(c, e_end);
+    const float total = c * (1 + end) + inv_sqrt_pi * e_end;
+    float lo = -1, hi = end, s = 0;
     float x = end - (end + 1) * (1 - erfc_given_exp(sqrtf(-fast_log(u)), u));
-    for (int i = 0; i < 10; i++) {
+    for (int i = 0; i < 12; i++) {
         x = x > lo && x < hi ? x : 0.5f * (lo + hi);
-        slope = erf_inverse(x);
-        const float value = c * (1 + x) + inv_sqrt_pi * fast_exp(-slope * slope) - u * total;
-        if (fabsf(value) <= 1e-6f * total)
-            break;
-        if (value > 0)
+        s = erf_inverse(x);
+        const float e = fast_exp(-s * s), slope = half_sqrt_pi / e;
+        const float g = c * (1 + x) + inv_sqrt_pi * e - u * total, g1 = c - s;
+        if (g > 0)
             hi = x;
         else
             lo = x;
-        x -= value / (c - slope);
+        const float dx = -2 * g * g1 / (2 * g1 * g1 + g * slope), ds = dx * slope;
+        if (fabsf(ds) < 0.01f) {
+            s += ds * (1 + s * ds);
+            break;
+        }
+        x += dx;
     }
-    return fminf(slope, c);
+    return fminf(s, c);
 }
 
 static vec3 sample_beckmann(const struct microfacet *m, vec3 v, struct vec2 u) {
     const float t = sqrtf(microfacet_stretch2(m, v));
-    const float c = v[2] / fmaxf(t, 1e-30f);
+    const float c = v[2] / maxf(t, 1e-30f);
     const float along = sample_beckmann_slope(c, u.x);
     const float across = erf_inverse(2 * clampf(u.y, 3e-8f, 1 - 6e-8f) - 1);
     const float inv = t > 0 ? 1 / t : 0;

@@ -70,19 +70,19 @@ static inline float erfc_given_exp(float a, float e) {
 
 // sigma(v) for v_z >= 0; in (0, 1] up to rounding.
 static inline float microfacet_area(const struct microfacet *m, vec3 v) {
-    const float z = fmaxf(v[2], 0), t2 = microfacet_stretch2(m, v);
+    const float z = maxf(v[2], 0), t2 = microfacet_stretch2(m, v);
     if (m->type == MICROFACET_GGX)
-        return fmaxf(0.5f * (z + sqrtf(z * z + t2)), 1e-20f);
+        return maxf(0.5f * (z + sqrtf(z * z + t2)), 1e-20f);
     // z (1 + Lambda), Lambda = (exp(-a^2) / (a sqrt pi) - erfc(a)) / 2 with a = z / t
     if (z * z >= 16 * t2)
-        return fmaxf(z, 1e-20f);
+        return maxf(z, 1e-20f);
     const float t = sqrtf(t2), a = z / t, e = fast_exp(-a * a);
     return z + 0.5f * (t * 0.56418958f * e - z * erfc_given_exp(a, e));
 }
 
 // Smith's masking, the share of the facets facing v that v sees.
 static inline float microfacet_G1(const struct microfacet *m, vec3 v) {
-    return fminf(fmaxf(v[2], 0) / microfacet_area(m, v), 1);
+    return minf(maxf(v[2], 0) / microfacet_area(m, v), 1);
 }
 
 // A normal with the density D_v of visible normals, for v_z > 0 and u in [0,1)^2.

@@ -14,7 +14,12 @@ static inline vec3 absolute(vec3 a) {
 }
 
 static inline float largest(vec3 a) {
-    return fmaxf(fabsf(a[0]), fmaxf(fabsf(a[1]), fabsf(a[2])));
+    return maxf(fabsf(a[0]), maxf(fabsf(a[1]), fabsf(a[2])));
+}
+
+// -1, 0 or 1 in each lane
+static inline vec3 sign(vec3 a) {
+    return __builtin_convertvector((a < 0) - (a > 0), vec3);
 }
 
 // Bound per axis on the distance between a point w0 + w1 + w2 interpolated on a triangle with edges
@@ -24,7 +29,7 @@ static inline float largest(vec3 a) {
 // where the interpolation is exact (a plane y = 0).
 static inline vec3 triangle_error(vec3 w0, vec3 w1, vec3 w2, vec3 e1, vec3 e2) {
     const float u = 0x1p-24f;
-    const float extent = 3 * u * fmaxf(largest(e1), largest(e2));
+    const float extent = 3 * u * maxf(largest(e1), largest(e2));
     return 7 * u / (1 - 7 * u) * (absolute(w0) + absolute(w1) + absolute(w2)) +
            v3(extent, extent, extent);
 }
@@ -32,16 +37,9 @@ static inline vec3 triangle_error(vec3 w0, vec3 w1, vec3 w2, vec3 e1, vec3 e2) {
 // Moves p off its surface to the side of n that w points to, far enough that p's rounding error
 // (absolute, per axis) cannot put it on the other side (Pharr, Jakob, Humphreys 2023, 6.8.6).
 static inline vec3 offset_point(vec3 p, vec3 error, vec3 n, vec3 w) {
-    const float d = fabsf(n[0]) * error[0] + fabsf(n[1]) * error[1] + fabsf(n[2]) * error[2];
-    vec3 offset = d * n;
-    if (dot(w, n) < 0)
-        offset = -offset;
-    vec3 q = p + offset;
-    for (int i = 0; i < 3; i++) { // round away from p
-        if (offset[i] > 0)
-            q[i] = nextafterf(q[i], INFINITY);
-        else if (offset[i] < 0)
-            q[i] = nextafterf(q[i], -INFINITY);
-    }
-    return q;
+    const float d = dot(absolute(n), error);
+    const vec3 offset = dot(w, n) < 0 ? -d * n : d * n;
+    const vec3 q = p + offset;
+    // Away from p by one unit in the last place of the larger of the two, at least.
+    return q + 0x1p-23f * (absolute(q) + absolute(offset)) * sign(offset);
 }

@@ -23,6 +23,15 @@ struct vec2 {
 #define INV_PI 0.31830988618379067154f
 #define TWO_PI 6.28318530717958647693f
 
+// One instruction each, where fminf and fmaxf are calls because of NaN. A NaN in a gives b.
+static inline float minf(float a, float b) {
+    return a < b ? a : b;
+}
+
+static inline float maxf(float a, float b) {
+    return a > b ? a : b;
+}
+
 static inline vec3 v3(float x, float y, float z) {
     return (vec3){x, y, z, 0};
 }
@@ -54,7 +63,7 @@ static inline float length(vec3 a) {
 static inline vec3 normalize(vec3 a) {
     float l2 = dot(a, a);
     if (__builtin_expect(!(l2 > 1e-30f && l2 < 1e30f), 0)) {
-        const float m = fmaxf(fabsf(a[0]), fmaxf(fabsf(a[1]), fabsf(a[2])));
+        const float m = maxf(fabsf(a[0]), maxf(fabsf(a[1]), fabsf(a[2])));
         if (!(m > 0) || !(m < INFINITY))
             return (vec3){0};
         const int e = ilogbf(m);
@@ -73,7 +82,7 @@ static inline float sqr(float x) {
 }
 
 static inline float clampf(float x, float lo, float hi) {
-    return fminf(fmaxf(x, lo), hi);
+    return minf(maxf(x, lo), hi);
 }
 
 static inline float lerpf(float t, float a, float b) {
@@ -82,7 +91,7 @@ static inline float lerpf(float t, float a, float b) {
 
 // sqrt that takes rounding below zero for zero
 static inline float safe_sqrt(float x) {
-    return sqrtf(fmaxf(x, 0));
+    return sqrtf(maxf(x, 0));
 }
 
 // ---- spectrum -------------------------------------------------------------------------------
@@ -98,11 +107,11 @@ static inline spectrum spectrum_rgb(float r, float g, float b) {
 }
 
 static inline float spectrum_max(spectrum s) {
-    return fmaxf(s[0], fmaxf(s[1], s[2]));
+    return maxf(s[0], maxf(s[1], s[2]));
 }
 
 static inline float spectrum_min(spectrum s) {
-    return fminf(s[0], fminf(s[1], s[2]));
+    return minf(s[0], minf(s[1], s[2]));
 }
 
 static inline float spectrum_mean(spectrum s) {

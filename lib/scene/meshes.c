@@ -150,7 +150,7 @@ static void warn_of_lost_digits(const struct placing *p, const struct shape *s, 
     float far = 0;
     for (uint32_t i = 0; i < s->mesh.vertex_count; i++)
         for (int k = 0; k < 3; k++)
-            far = fmaxf(far, fabsf(s->mesh.positions[i][k]));
+            far = maxf(far, fabsf(s->mesh.positions[i][k]));
     const double scale = cbrt(fabs(transform_determinant3(&s->to_world)));
     (void)p;
     if (far * scale > 1e4 * size)

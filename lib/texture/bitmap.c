@@ -100,7 +100,7 @@ static float linearise(const struct bitmap *self, const struct image *im, float 
     if (self->raw)
         return v;
     if (self->gamma > 0)
-        return powf(fmaxf(v, 0), self->gamma);
+        return powf(maxf(v, 0), self->gamma);
     return self->gamma < 0 || im->srgb_encoded ? srgb_to_linear(v) : v;
 }
 
@@ -207,10 +207,10 @@ static void finish(void *data) {
 // Brings a coordinate into the range where the pixel index fits an int. NaN becomes 0.
 static float tame(int wrap, float u) {
     if (wrap == WRAP_REPEAT)
-        return fminf(fmaxf(u - floorf(u), 0), 1);
+        return minf(maxf(u - floorf(u), 0), 1);
     if (wrap == WRAP_MIRROR)
-        return fminf(fmaxf(u - 2 * floorf(0.5f * u), 0), 2);
-    return fminf(fmaxf(u, -4), 5);
+        return minf(maxf(u - 2 * floorf(0.5f * u), 0), 2);
+    return minf(maxf(u, -4), 5);
 }
 
 // Pixel index inside [0, n), or -1 outside of pictures that end there.

@@ -31,7 +31,7 @@ static void init_choice(struct world *w) {
     double total = 0;
     for (uint32_t i = 0; i < w->light_count; i++) {
         const float power = w->lights[i].type->power(w->lights[i].data);
-        weights[i] = power > 0 ? fminf(power, 1e30f) : 0;
+        weights[i] = power > 0 ? minf(power, 1e30f) : 0;
         total += (double)weights[i];
     }
     const double uniform = total > 0 ? total / w->light_count : 1;
