@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
+#include "math/colour.h"
 #include "mesh/ply_attribute.h"
 #include "mesh/ply_source.h"
 #include "mesh/reader.h"
@@ -48,10 +49,8 @@ static float decode_value(enum ply_type type, enum decode decode, double x) {
         [PLY_INT64] = 0x1p63,     [PLY_UINT64] = 0x1p64};
     if (decode == DECODE_PLAIN || !ply_type_is_integer(type))
         return (float)x;
-    x /= most[type];
-    if (decode == DECODE_SHARE)
-        return (float)x;
-    return (float)(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4)); // IEC 61966-2-1
+    const float share = (float)(x / most[type]);
+    return decode == DECODE_SHARE ? share : colour_srgb_to_linear(share);
 }
 
 static bool read_float(struct ply *f, int property, enum decode decode, float *out) {

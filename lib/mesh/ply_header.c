@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/ply_header.h"
 
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -140,7 +141,7 @@ bool ply_read_header(const char *path, const char *text, size_t size, struct ply
         return fail(at, &l, 0, "the word ply");
     for (;;) {
         at.line++;
-        if (p >= text + size) {
+        if (p >= text + size || at.line == INT_MAX) {
             log_error_at(at, "found the end of the file, expected end_header");
             return false;
         }

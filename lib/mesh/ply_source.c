@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/ply_source.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +20,7 @@ static bool fail_end(const struct ply_source *s) {
 
 static bool skip_space(struct ply_source *s) {
     for (; text_is_space(*s->p); s->p++)
-        s->at.line += *s->p == '\n';
+        s->at.line += *s->p == '\n' && s->at.line < INT_MAX;
     return s->p < s->end || fail_end(s);
 }
 
