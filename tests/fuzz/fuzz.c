@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,7 +24,7 @@
 #endif
 #endif
 
-enum { BATCH = 200, SECONDS = 10, MEBIBYTES = 1024 };
+enum { BATCH = 200, SECONDS = 10, WALL_SECONDS = 120, MEBIBYTES = 1024 };
 
 enum outcome { PENDING, READ, REFUSED, SILENT, CRASHED, HUNG };
 static const char *const outcome_names[] = {"pending",         "read",    "refused",
@@ -92,6 +93,14 @@ static bool message_names(const struct fuzz *f, long from, const char *path) {
     return named;
 }
 
+// 10 seconds of processor time; for the case that a process sleeps, or its child hangs, also wall
+// time, which is generous because a machine may be busy with other things.
+static void set_timer(int seconds, unsigned wall_seconds) {
+    const struct itimerval t = {.it_value = {.tv_sec = seconds}};
+    setitimer(ITIMER_PROF, &t, NULL);
+    alarm(wall_seconds);
+}
+
 static void run_case(const struct fuzz *f, int i) {
     char path[256];
     case_path(f, i, path, sizeof path);
@@ -99,9 +108,9 @@ static void run_case(const struct fuzz *f, int i) {
     fflush(stderr);
     const long from = (long)lseek(2, 0, SEEK_END);
     fprintf(stderr, "case %d\n", i);
-    alarm(SECONDS);
+    set_timer(SECONDS, WALL_SECONDS);
     const bool good = f->read(path);
-    alarm(0);
+    set_timer(0, 0);
     fflush(stderr);
     const long at = from + snprintf(NULL, 0, "case %d\n", i);
     f->outcomes[i] = good ? READ : message_names(f, at, path) ? REFUSED : SILENT;
@@ -152,7 +161,8 @@ static int fork_batch(const struct fuzz *f, int first, int end) {
         return end;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
         exit(2);
-    f->outcomes[i] = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM ? HUNG : CRASHED;
+    const int death = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    f->outcomes[i] = death == SIGALRM || death == SIGPROF ? HUNG : CRASHED;
     keep_messages(f, i);
     return i + 1;
 }
