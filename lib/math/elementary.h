@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // exp, log, sine and cosine in single precision, inline: the library's take longer than a whole
-// evaluation of a material, and differ between systems. Coefficients of Cephes (Moshier 1992).
+// evaluation of a material, and differ between systems. Coefficients of Cephes (Moshier 1992),
+// polynomials by Estrin's scheme, whose chain of dependent operations is short.
 #pragma once
 
 #include <stdint.h>
@@ -15,16 +16,14 @@ static inline float fast_exp(float x) {
     x = minf(x, 88);
     const float n = rintf(x * 1.44269504f);
     const float r = (x - n * 0.693359375f) + n * 2.12194440e-4f;
-    float p = 1.9875691500e-4f;
-    p = p * r + 1.3981999507e-3f;
-    p = p * r + 8.3334519073e-3f;
-    p = p * r + 4.1665795894e-2f;
-    p = p * r + 1.6666665459e-1f;
-    p = p * r + 5.0000001201e-1f;
+    const float r2 = r * r;
+    const float p = (1.9875691500e-4f * r + 1.3981999507e-3f) * (r2 * r2) +
+                    (8.3334519073e-3f * r + 4.1665795894e-2f) * r2 +
+                    (1.6666665459e-1f * r + 5.0000001201e-1f);
     const int32_t bits = ((int32_t)n + 127) << 23;
     float scale;
     memcpy(&scale, &bits, sizeof scale);
-    return (p * r * r + r + 1) * scale;
+    return (p * r2 + r + 1) * scale;
 }
 
 // Natural logarithm to 2 ulp for normal x > 0.
@@ -37,16 +36,13 @@ static inline float fast_log(float x) {
     float m;
     memcpy(&m, &bits, sizeof m);
     m -= 1;
-    float p = 7.0376836292e-2f;
-    p = p * m - 1.1514610310e-1f;
-    p = p * m + 1.1676998740e-1f;
-    p = p * m - 1.2420140846e-1f;
-    p = p * m + 1.4249322787e-1f;
-    p = p * m - 1.6668057665e-1f;
-    p = p * m + 2.0000714765e-1f;
-    p = p * m - 2.4999993993e-1f;
-    p = p * m + 3.3333331174e-1f;
-    const float m2 = m * m, k = (float)e;
+    const float m2 = m * m, m4 = m2 * m2;
+    const float p = 7.0376836292e-2f * (m4 * m4) +
+                    ((-1.1514610310e-1f * m + 1.1676998740e-1f) * m2 +
+                     (-1.2420140846e-1f * m + 1.4249322787e-1f)) * m4 +
+                    ((-1.6668057665e-1f * m + 2.0000714765e-1f) * m2 +
+                     (-2.4999993993e-1f * m + 3.3333331174e-1f));
+    const float k = (float)e;
     return (m + (p * m * m2 - k * 2.12194440e-4f - 0.5f * m2)) + k * 0.693359375f;
 }
 
