@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every material at its extremes: directions to 89.9999 degrees and on the horizon, random numbers
+// at the ends of their range, roughness across the switch to smooth, indices of refraction near 1.
+// Everything stays finite and non-negative, and what a parameter's limit means is what comes out.
+#include <stdio.h>
+
+#include "check.h"
+#include "math/hash.h"
+#include "property/bsdf_cases.h"
+
+static const float heights[] = {1, 0.99999994f, 1.7453e-2f, 1.7453e-5f, 1e-7f, 1e-12f, 1e-30f, 0};
+static const float ends[] = {0, 0x1p-24f, 1e-4f, 0.5f, 0.9999f, 0x1.fffffep-1f};
+
+enum { HEIGHTS = sizeof heights / sizeof *heights, ENDS = sizeof ends / sizeof *ends };
+
+static vec3 direction(float z, float phi, float sign) {
+    const float r = safe_sqrt((1 - z) * (1 + z));
+    return v3(r * cosf(phi), r * sinf(phi), sign * z);
+}
+
+static void check_eval(const struct closure *c, vec3 wi) {
+    float pdf;
+    const spectrum f = closure_eval(c, wi, &pdf);
+    CHECK(spectrum_is_finite(f) && spectrum_min(f) >= 0 && f[3] == 0);
+    CHECK(isfinite(pdf) && pdf >= 0);
+}
+
+static void check_sample(const struct closure *c, float u1, struct vec2 u2) {
+    struct bsdf_sample s;
+    if (!closure_sample(c, u1, u2, &s))
+        return;
+    CHECK(spectrum_is_finite(s.weight) && spectrum_min(s.weight) >= 0 && s.weight[3] == 0);
+    CHECK(isfinite(s.pdf_sa) && s.pdf_sa > 0 && s.eta > 0 && isfinite(s.eta));
+    CHECK(fabsf(length(s.wi) - 1) < 1e-5f);
+    check_eval(c, s.wi);
+}
+
+static void check_direction(const struct object *o, vec3 wo) {
+    static struct closure_stack stack;
+    struct rng rng = {3};
+    const struct bsdf_point point = bsdf_case_point();
+    stack.used = 0;
+    const struct closure *c = bsdf_resolve(o, &point, wo, &stack);
+    const spectrum through = bsdf_null_transmittance(o, &point, wo);
+    CHECK(spectrum_min(through) >= 0 && spectrum_max(through) <= 1);
+    if (!c)
+        return;
+    const spectrum albedo = closure_albedo(c);
+    CHECK(spectrum_is_finite(albedo) && spectrum_min(albedo) >= 0);
+    for (int i = 0; i < ENDS * ENDS * ENDS; i++)
+        check_sample(c, ends[i % ENDS],
+                     (struct vec2){ends[i / ENDS % ENDS], ends[i / ENDS / ENDS]});
+    for (int i = 0; i < 300; i++) {
+        const float u1 = rng_float(&rng), u = rng_float(&rng), v = rng_float(&rng);
+        check_sample(c, u1, (struct vec2){u, v});
+        const float z = i % 2 ? 2 * u - 1 : heights[i % HEIGHTS];
+        check_eval(c, direction(fabsf(z), TWO_PI * v, z < 0 ? -1 : 1));
+    }
+    check_eval(c, wo);
+    check_eval(c, -wo);
+    check_eval(c, v3(-wo[0], -wo[1], wo[2]));
+}
+
+static void everything_stays_finite(void) {
+    for (int i = 0; i < BSDF_CASES; i++) {
+        struct arena arena = {0};
+        const struct object *o = bsdf_case_make(&arena, &bsdf_cases[i]);
+        const int before = check_failures;
+        for (int k = 0; k < 2 * HEIGHTS; k++)
+            check_direction(o, direction(heights[k / 2], 1.1f * (float)k, k % 2 ? -1 : 1));
+        if (check_failures > before)
+            printf("in %s %s\n", bsdf_cases[i].name, bsdf_cases[i].overrides);
+        arena_finish(&arena);
+    }
+}
+
+// ---- the switch to smooth -------------------------------------------------------------------
+
+// What a disk light of half-angle 10 degrees around the mirror direction, radiance 1, gives, with
+// its standard error.
+static double lit_by_disk(const struct object *o, vec3 wo, double *error) {
+    enum { N = 200000 };
+    static struct closure_stack stack;
+    const struct bsdf_point point = bsdf_case_point();
+    const vec3 mirror = v3(-wo[0], -wo[1], wo[2]);
+    struct rng rng = {11};
+    double sum = 0, sum2 = 0;
+    stack.used = 0;
+    const struct closure *c = bsdf_resolve(o, &point, wo, &stack);
+    for (int i = 0; i < N; i++) {
+        struct bsdf_sample s;
+        const float u1 = rng_float(&rng), u = rng_float(&rng), v = rng_float(&rng);
+        const bool hit = closure_sample(c, u1, (struct vec2){u, v}, &s) &&
+                         dot(s.wi, mirror) > cosf(10 * PI / 180);
+        const double x = hit ? spectrum_mean(s.weight) : 0;
+        sum += x;
+        sum2 += x * x;
+    }
+    const double mean = sum / N;
+    *error = sqrt(fmax(sum2 / N - mean * mean, 0) / N);
+    return mean;
+}
+
+// The same numbers choose the lobe on both sides of the switch, so that their noise cancels nearly.
+// Below 0.1 % is required; grazing angles where facets mask each other are left out, since the
+// light's rim then counts.
+static void roughness_meets_smooth(const char *name, const char *more) {
+    const float degrees[] = {0, 30, 60, 80};
+    for (int i = 0; i < 8; i++) {
+        struct arena arena = {0};
+        const char *const distribution = i % 2 ? "ggx" : "beckmann";
+        const struct object *rough = make_bsdf(
+            &arena, name, arena_printf(&arena, "alpha=0.000101 distribution=%s %s", distribution,
+                                       more), NULL);
+        const struct object *smooth = make_bsdf(
+            &arena, name, arena_printf(&arena, "alpha=0.000099 distribution=%s %s", distribution,
+                                       more), NULL);
+        CHECK(!(bsdf_lobes(rough) & LOBE_SPECULAR) && !(bsdf_lobes(smooth) & LOBE_GLOSSY));
+        const vec3 wo = direction(cosf(degrees[i / 2] * (PI / 180)), 0.4f, 1);
+        double ea, eb;
+        const double a = lit_by_disk(rough, wo, &ea), b = lit_by_disk(smooth, wo, &eb);
+        printf("%-16s %-9s %2.0f degrees: %.6f rough, %.6f smooth, jump %+.5f %%\n", name,
+               distribution, degrees[i / 2], a, b, 100 * (a / b - 1));
+        CHECK_NEAR(a / b, 1, 1e-3);
+        arena_finish(&arena);
+    }
+}
+
+// A roughness of zero is the smooth material itself.
+static void zero_roughness_is_smooth(void) {
+    struct arena arena = {0};
+    const char *const pairs[][2] = {{"roughconductor", "conductor"},
+                                    {"roughdielectric", "dielectric"}};
+    const struct bsdf_point point = bsdf_case_point();
+    for (int i = 0; i < 2; i++) {
+        const struct object *rough = make_bsdf(&arena, pairs[i][0], "alpha=0", NULL);
+        const struct object *smooth = make_bsdf(&arena, pairs[i][1], "", NULL);
+        static struct closure_stack a, b;
+        a.used = b.used = 0;
+        const vec3 wo = direction(0.6f, 1, 1);
+        struct bsdf_sample s, t;
+        CHECK(closure_sample(bsdf_resolve(rough, &point, wo, &a), 0.7f, (struct vec2){0, 0}, &s));
+        CHECK(closure_sample(bsdf_resolve(smooth, &point, wo, &b), 0.7f, (struct vec2){0, 0}, &t));
+        CHECK(s.lobe == t.lobe && s.pdf_sa == t.pdf_sa && s.eta == t.eta);
+        for (int k = 0; k < 4; k++)
+            CHECK(s.wi[k] == t.wi[k] && s.weight[k] == t.weight[k]);
+    }
+    arena_finish(&arena);
+}
+
+// ---- indices near 1 -------------------------------------------------------------------------
+
+static void equal_indices_leave_nothing(void) {
+    const char *const names[] = {"dielectric", "roughdielectric", "thindielectric"};
+    const struct bsdf_point point = bsdf_case_point();
+    for (int i = 0; i < 3; i++) {
+        struct arena arena = {0};
+        const struct object *o = make_bsdf(&arena, names[i], "int_ior=1.3 ext_ior=1.3", NULL);
+        CHECK(bsdf_lobes(o) & LOBE_NULL);
+        for (int k = 0; k < 2 * (HEIGHTS - 1); k++) {
+            static struct closure_stack stack;
+            struct bsdf_sample s;
+            const vec3 wo = direction(heights[k / 2], 0.3f, k % 2 ? -1 : 1);
+            stack.used = 0;
+            const struct closure *c = bsdf_resolve(o, &point, wo, &stack);
+            CHECK(c && closure_sample(c, 0, (struct vec2){0, 0}, &s));
+            CHECK(s.lobe == (LOBE_NULL | LOBE_TRANSMISSION) && s.eta == 1 && s.pdf_sa == 1);
+            CHECK(s.wi[0] == -wo[0] && s.wi[1] == -wo[1] && s.wi[2] == -wo[2]);
+            CHECK(spectrum_min(s.weight) == 1 && spectrum_max(s.weight) == 1);
+            CHECK(spectrum_min(bsdf_null_transmittance(o, &point, wo)) == 1);
+        }
+        arena_finish(&arena);
+    }
+}
+
+// As the index approaches 1, light comes to go straight through with weight 1.
+static void nearly_equal_indices_leave_almost_nothing(void) {
+    const char *const names[] = {"dielectric", "roughdielectric"};
+    const struct bsdf_point point = bsdf_case_point();
+    for (int i = 0; i < 2; i++) {
+        for (int k = 2; k < 8; k++) {
+            struct arena arena = {0};
+            const double excess = pow(10, -k);
+            const struct object *o = make_bsdf(
+                &arena, names[i], arena_printf(&arena, "int_ior=%.9g ext_ior=1", 1 + excess), NULL);
+            static struct closure_stack stack;
+            struct bsdf_sample s;
+            const vec3 wo = direction(0.7f, 0.3f, 1);
+            stack.used = 0;
+            const struct closure *c = bsdf_resolve(o, &point, wo, &stack);
+            for (int j = 0; j < 100; j++) {
+                const struct vec2 u = {(float)j / 100, (float)(j * 7 % 100) / 100};
+                CHECK(closure_sample(c, 0.5f, u, &s));
+                CHECK(length(s.wi + wo) <= 3 * excess);
+                CHECK_NEAR(spectrum_mean(s.weight), 1, 2.1 * excess + 1e-6);
+            }
+            arena_finish(&arena);
+        }
+    }
+}
+
+int main(void) {
+    everything_stays_finite();
+    roughness_meets_smooth("roughconductor", "eta=0.2 k=3.9");
+    roughness_meets_smooth("roughdielectric", "int_ior=1.5 ext_ior=1");
+    roughness_meets_smooth("roughplastic", "");
+    zero_roughness_is_smooth();
+    equal_indices_leave_nothing();
+    nearly_equal_indices_leave_almost_nothing();
+    return check_result();
+}
