@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "image/oiio.h"
 
 enum {
     MEBIBYTE = 1 << 20,
@@ -37,7 +38,7 @@ enum {
 
 // What the child sends first; names, attributes and pixels follow, or the message.
 struct packet {
-    int32_t ok, width, height, channels, attributes, bits, srgb;
+    int32_t ok, unsupported, width, height, channels, attributes, bits, srgb;
     int32_t full_width, full_height, crop_x, crop_y;
 };
 
@@ -51,8 +52,14 @@ uint64_t decoder_pixel_limit(uint64_t file_size) {
     return 768 * (uint64_t)MEBIBYTE + 64 * file_size;
 }
 
+// Of processor time, so that a busy machine refuses nothing that an idle one reads.
 static double decoder_seconds(uint64_t file_size) {
     return 8 + (double)file_size / (4 * MEBIBYTE);
+}
+
+// Of time on the clock, for a decoder that waits for ever.
+static double decoder_patience(uint64_t file_size) {
+    return 8 * decoder_seconds(file_size);
 }
 
 bool decoder_fail(struct decoder_input *in, const char *format, ...) {
@@ -94,7 +101,7 @@ static bool write_all(int fd, const void *data, size_t size) {
 
 static void send_image(int fd, const struct image *im) {
     const struct packet head = {
-        1, im->width, im->height, im->channels, im->attribute_count, im->bits, im->srgb_encoded,
+        1, 0, im->width, im->height, im->channels, im->attribute_count, im->bits, im->srgb_encoded,
         im->full_width, im->full_height, im->crop_x, im->crop_y,
     };
     bool good = write_all(fd, &head, sizeof head) &&
@@ -121,8 +128,8 @@ static size_t address_space(void) {
 }
 
 static void limit_resources(uint64_t file_size) {
-    const rlim_t seconds = (rlim_t)decoder_seconds(file_size) + 1;
-    setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds});
+    const rlim_t seconds = (rlim_t)decoder_seconds(file_size);
+    setrlimit(RLIMIT_CPU, &(struct rlimit){seconds, seconds + 1});
     setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
     const size_t mapped = address_space();
     const rlim_t memory = mapped + decoder_pixel_limit(file_size) + 256 * MEBIBYTE;
@@ -144,7 +151,7 @@ static void child_main(int fd, struct decoder_input *in, image_decoder decode) {
     if (decode(in, &im)) {
         send_image(fd, &im);
     } else {
-        const struct packet head = {0};
+        const struct packet head = {.unsupported = in->unsupported};
         if (write_all(fd, &head, sizeof head))
             write_all(fd, in->message, sizeof in->message);
     }
@@ -205,6 +212,7 @@ static bool receive_image(int fd, struct decoder_input *in, struct image *im, do
     if (!read_all(fd, &head, sizeof head, deadline))
         return false;
     if (!head.ok) {
+        in->unsupported = head.unsupported;
         read_all(fd, in->message, sizeof in->message, deadline);
         in->message[sizeof in->message - 1] = '\0';
         clean(in->message);
@@ -248,7 +256,7 @@ static bool run_child(struct decoder_input *in, image_decoder decode, struct ima
         log_error("%s: cannot be read: no pipe: %s", in->path, strerror(errno));
         return false;
     }
-    const double deadline = time_seconds() + decoder_seconds(in->file_size);
+    const double deadline = time_seconds() + decoder_patience(in->file_size);
     const pid_t child = fork();
     if (child == 0) {
         close(ends[0]);
@@ -268,14 +276,15 @@ static bool run_child(struct decoder_input *in, image_decoder decode, struct ima
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR)
         continue;
-    if (!good) {
+    if (!good && !in->unsupported)
         report(in, status, late);
+    if (!good)
         image_finish(im);
-    }
     return good;
 }
 
-bool image_decode_in_child(const char *path, image_decoder decode, struct image *im) {
+bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
+                           struct image *im) {
     struct decoder_input in = {.path = path};
     struct stat st;
     if (stat(path, &st) != 0 || access(path, R_OK) != 0) {
@@ -287,5 +296,15 @@ bool image_decode_in_child(const char *path, image_decoder decode, struct image 
         return false;
     }
     in.file_size = (uint64_t)st.st_size;
-    return run_child(&in, decode, im);
+    if (run_child(&in, decode, im))
+        return true;
+    if (!in.unsupported)
+        return false;
+    if (fallback && oiio_load()) {
+        in.unsupported = false;
+        in.message[0] = '\0';
+        return run_child(&in, fallback, im);
+    }
+    report(&in, 0, false);
+    return false;
 }

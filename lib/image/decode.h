@@ -17,6 +17,7 @@ struct decoder_input {
     const char *path;
     uint64_t file_size;
     char message[512]; // why it failed, without the file's name
+    bool unsupported;  // sound as far as it was read, but this decoder lacks a part it needs
 };
 
 // Fills *im, or writes a message and returns false. Must not use log_error (it runs in the child).
@@ -33,5 +34,7 @@ bool decoder_init_image(struct decoder_input *in, struct image *im, int64_t widt
 bool decoder_fail(struct decoder_input *in, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-// Runs the decoder in a child. false after one error message that names the file.
-bool image_decode_in_child(const char *path, image_decoder decode, struct image *im);
+// Runs the decoder in a child, and `fallback` (may be NULL) in another where the first finds the
+// file unsupported. false after one error message that names the file.
+bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
+                           struct image *im);

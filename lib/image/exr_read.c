@@ -167,8 +167,11 @@ static bool decode_chunk(struct reader *r, const exr_chunk_info_t *chunk, int64_
         info->user_pixel_stride = (int32_t)stride;
         info->user_line_stride = (int32_t)(stride * (size_t)im->width);
     }
-    return exr_decoding_choose_default_routines(r->context, 0, p) == EXR_ERR_SUCCESS &&
-           exr_decoding_run(r->context, 0, p) == EXR_ERR_SUCCESS;
+    if (exr_decoding_choose_default_routines(r->context, 0, p) != EXR_ERR_SUCCESS)
+        return false;
+    const exr_result_t decoded = exr_decoding_run(r->context, 0, p);
+    r->in->unsupported = decoded == EXR_ERR_FEATURE_NOT_IMPLEMENTED; // DWA before version 3.4
+    return decoded == EXR_ERR_SUCCESS;
 }
 
 static bool damaged(struct reader *r, const char *what, int64_t x, int64_t y,

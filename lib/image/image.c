@@ -103,7 +103,7 @@ bool image_read(const char *path, struct image *im) {
     const bool exr = is_exr(path);
     if (!exr && file_exists(path) && !oiio_load())
         return false;
-    return image_decode_in_child(path, exr ? exr_decode : oiio_decode, im);
+    return image_decode_in_child(path, exr ? exr_decode : oiio_decode, exr ? oiio_decode : NULL, im);
 }
 
 // Finds the channels of a layer that make its colour; false if it has none.

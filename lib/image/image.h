@@ -44,7 +44,7 @@ int image_find_channel(const struct image *im, const char *name); // -1: none
 // Reads any format: EXR through OpenEXRCore, everything else through OpenImageIO, both in a child
 // process with limits on memory and time (decode.h). false after one error message; *im is then
 // empty. EXR: the first part, level 0, uint and half converted to float; deep data and subsampled
-// channels are refused.
+// channels are refused. DWA compression, which OpenEXRCore lacks, is read through OpenImageIO.
 bool image_read(const char *path, struct image *im);
 
 struct image_exr_options {

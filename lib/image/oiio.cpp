@@ -31,6 +31,7 @@ static bool is_srgb(const OIIO::ImageSpec &spec, const std::string &format) {
 static bool decode(const struct oiio_host *host, struct decoder_input *in, struct image *im) {
     // The child has no threads but this one; libraries must not wait for others.
     OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1; // colour stays as it stands in the file
     auto input = OIIO::ImageInput::open(in->path, &config);

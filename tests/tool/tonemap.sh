@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# relume tonemap and info: known values of known pictures, and wrong usage.
+#
+# usage: tonemap.sh RELUME
+set -u
+relume=$1
+# shellcheck source=tests/tool/pictures.sh
+. "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
+
+half=$folder/half.pfm png=$folder/out.png
+make_pfm "$half" 5 7 3f000000
+
+# shows VALUE OPTION...: the 8-bit value that 0.5 becomes
+shows() {
+    local value=$1
+    shift
+    expect 0 "$relume" tonemap "$half" -o "$png" "$@"
+    expect 0 "$relume" info "$png" --json
+    near "$out" channels.0.mean "$(python3 -c "print($value / 255)")"
+    near "$out" channels.2.max "$(python3 -c "print($value / 255)")"
+}
+
+shows 188                          # 1.055 * 0.5^(1/2.4) - 0.055 = 0.7354
+shows 137 --exposure -1            # 0.25: 0.5371
+shows 255 --exposure 3
+shows 206 --curve filmic           # 0.6163 by the curve: 0.8066
+shows 188 --layer R
+near "$out" width 5
+near "$out" height 7
+near "$out" bits 8
+
+expect 0 "$relume" info "$half" --json
+near "$out" channels.1.mean 0.5
+near "$out" bits 32
+expect 0 "$relume" info "$half"
+contains "$out" "width: 5"
+
+expect 2 "$relume" tonemap "$half"
+contains "$err" "--output"
+expect 2 "$relume" tonemap "$half" -o "$png" --curve cinematic
+contains "$err" "filmic"
+expect 2 "$relume" tonemap "$half" -o "$png" --exposure bright
+expect 1 "$relume" tonemap "$half" -o "$png" --layer albedo
+contains "$err" "half.pfm"
+expect 1 "$relume" tonemap "$half" -o "$folder/none/out.png"
+expect 1 "$relume" tonemap "$folder" -o "$png"
+echo "hello" >"$folder/text.png"
+expect 1 "$relume" info "$folder/text.png"
+contains "$err" "text.png"
+printf '' >"$folder/empty.exr"
+expect 1 "$relume" info "$folder/empty.exr"
+contains "$err" "empty.exr"
+expect 2 "$relume" inf "$half"
+contains "$err" "'info'"
+for name in "" compare tonemap info; do
+    # shellcheck disable=SC2086 # no name: no argument
+    expect 0 "$relume" $name --help
+    contains "$out" "usage: relume"
+done
+expect 0 "$relume" --version
+expect 2 "$relume"
+finish
