@@ -146,13 +146,12 @@ static void bound_scene(struct placing *p, struct box *all) {
 }
 
 // Vertices that a file gives far from its own origin have lost digits before we see them.
-static void warn_of_lost_digits(const struct placing *p, const struct shape *s, double size) {
+static void warn_of_lost_digits(const struct shape *s, double size) {
     float far = 0;
     for (uint32_t i = 0; i < s->mesh.vertex_count; i++)
         for (int k = 0; k < 3; k++)
             far = maxf(far, fabsf(s->mesh.positions[i][k]));
     const double scale = cbrt(fabs(transform_determinant3(&s->to_world)));
-    (void)p;
     if (far * scale > 1e4 * size)
         log_warn_at(s->at, "vertices stand %g scene sizes from the origin of their file, where "
                     "floats resolve only %.2g of that size; move the mesh by its transform instead",
@@ -224,7 +223,7 @@ bool meshes_load(struct reader *r) {
     memcpy(r->scene->centre, p.centre, sizeof p.centre);
     for (size_t i = 0; i < r->jobs.count; i++) {
         const struct mesh_job *job = &LIST_AT(&r->jobs, struct mesh_job, i);
-        warn_of_lost_digits(&p, &LIST_AT(&r->shapes, struct shape, job->shape), box_radius(&all));
+        warn_of_lost_digits(&LIST_AT(&r->shapes, struct shape, job->shape), box_radius(&all));
     }
     bool ok = set_bounds(r->scene, &all);
     if (ok) {
