@@ -26,6 +26,7 @@ enum lobe {
     LOBE_NULL = 8,          // delta, straight through: the surface is not there
     LOBE_REFLECTION = 16,
     LOBE_TRANSMISSION = 32,
+    LOBE_ANISOTROPIC = 64,  // it matters how the shading frame is turned about its normal
 };
 
 #define LOBE_DELTA (LOBE_SPECULAR | LOBE_NULL)

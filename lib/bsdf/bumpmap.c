@@ -27,7 +27,7 @@ static bool prepare(struct object *self, struct arena *arena) {
 }
 
 static uint32_t lobes(const void *data) {
-    return bsdf_lobes(((const struct bumpmap *)data)->child);
+    return bsdf_lobes(((const struct bumpmap *)data)->child) | LOBE_ANISOTROPIC;
 }
 
 // cross(dpdu + n h_u, dpdv + n h_v) in the local frame, with dpdu and dpdv taken tangential, and

@@ -24,7 +24,7 @@ static bool prepare(struct object *self, struct arena *arena) {
 }
 
 static uint32_t lobes(const void *data) {
-    return bsdf_lobes(((const struct normalmap *)data)->child);
+    return bsdf_lobes(((const struct normalmap *)data)->child) | LOBE_ANISOTROPIC;
 }
 
 // The one place where lanes of a spectrum are not a colour.

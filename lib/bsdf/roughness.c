@@ -19,7 +19,9 @@ bool roughness_prepare(const struct roughness *r, const struct object *self) {
 uint32_t roughness_lobes(const struct roughness *r) {
     const bool pair = is_given(&r->alpha_u);
     const struct texture_ref *u = pair ? &r->alpha_u : &r->alpha, *v = pair ? &r->alpha_v : u;
+    const uint32_t turned = pair ? LOBE_ANISOTROPIC : 0;
     if (u->texture || v->texture)
-        return LOBE_GLOSSY | LOBE_SPECULAR;
-    return maxf(u->value[0], v->value[0]) >= MICROFACET_ALPHA_MIN ? LOBE_GLOSSY : LOBE_SPECULAR;
+        return LOBE_GLOSSY | LOBE_SPECULAR | turned;
+    return maxf(u->value[0], v->value[0]) >= MICROFACET_ALPHA_MIN ? LOBE_GLOSSY | turned
+                                                                  : LOBE_SPECULAR;
 }

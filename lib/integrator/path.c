@@ -24,8 +24,17 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-// Dimensions of a vertex: light 2-D, material 2-D, light choice, lobe choice, roulette.
-enum { CAMERA_DIMENSIONS = 4, VERTEX_DIMENSIONS = 8 };
+// Dimensions of the random numbers: those of the camera, then so many for each vertex, whether or
+// not it needs them all, so that each purpose keeps its own well-distributed points.
+enum {
+    CAMERA_DIMENSIONS = 4,
+    VERTEX_DIMENSIONS = 8,
+    DRAW_LIGHT_POINT = 0,
+    DRAW_DIRECTION = 2,
+    DRAW_LIGHT = 4,
+    DRAW_LOBE = 5,
+    DRAW_ROULETTE = 6,
+};
 
 struct lane {
     struct ray ray;
@@ -38,20 +47,9 @@ struct lane {
     bool alive, first_done;
 };
 
-struct lane_random {
-    struct vec2 light, scatter;
-    float light_choice, lobe, roulette;
-};
-
-static struct lane_random draw(struct lane *l) {
-    struct lane_random r;
-    l->sampler.dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * l->events;
-    r.light = sampler_2d(&l->sampler);
-    r.scatter = sampler_2d(&l->sampler);
-    r.light_choice = sampler_1d(&l->sampler);
-    r.lobe = sampler_1d(&l->sampler);
-    r.roulette = sampler_1d(&l->sampler);
-    return r;
+static struct sampler *draw(struct lane *l, uint32_t purpose) {
+    l->sampler.dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * l->events + purpose;
+    return &l->sampler;
 }
 
 // Whether shading and geometric normal agree on which side w (local wl) is.
@@ -78,75 +76,85 @@ static void first_event(struct trace_context *ctx, int i, struct lane *l, const 
         vertex_add_first(ctx, i, s, closure);
 }
 
-static void survive_roulette(const struct path *p, struct lane *l, float u) {
+static void survive_roulette(const struct path *p, struct lane *l) {
     if (l->from.depth < (uint32_t)p->rr_depth)
         return;
     const float q = minf(spectrum_max(l->beta) * l->eta2, 0.95f);
-    if (u < q)
+    if (sampler_1d(draw(l, DRAW_ROULETTE)) < q)
         l->beta /= q;
     else
         l->alive = false;
 }
 
+// The surface is not there: direction and origin stay.
+static void pass_through(struct lane *l, const struct surface *s, const struct bsdf_sample *b) {
+    l->beta *= b->weight;
+    l->ray.o = surface_offset(s, l->ray.d);
+    l->ray.tmin = 0;
+    l->ray.tmax = INFINITY;
+}
+
 // Continues the path along a sampled direction, or ends it.
 static void scatter(const struct path *p, struct lane *l, const struct surface *s,
-                    const struct bsdf_sample *b, float u_roulette) {
+                    const struct bsdf_sample *b) {
     const vec3 wi = to_world(&s->point.frame, b->wi);
-    if (b->lobe & LOBE_NULL) { // the surface is not there: direction and origin stay
-        l->beta *= b->weight;
-        l->ray.o = surface_offset(s, l->ray.d);
-        l->ray.tmin = 0;
-        l->ray.tmax = INFINITY;
-        l->events++;
-        return;
-    }
     if (p->strict_normals && !same_side(s, wi, b->wi)) {
         l->alive = false;
         return;
     }
     l->beta *= b->weight;
     l->eta2 *= b->eta * b->eta;
-    if (l->from.depth == 0)
-        l->from.lobe = b->lobe;
+    const uint32_t first_lobe = l->from.depth == 0 ? b->lobe : l->from.lobe;
     l->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, l->from.depth + 1,
-                                   l->from.lobe};
+                                   first_lobe};
     l->ray = (struct ray){surface_offset(s, wi), wi, 0, INFINITY};
-    l->events++;
     l->alive = !spectrum_is_black(l->beta);
     if (l->alive)
-        survive_roulette(p, l, u_roulette);
+        survive_roulette(p, l);
+}
+
+// Next event estimation: leaves a shadow test pending.
+static void sample_light(const struct path *p, struct trace_context *ctx, struct lane *l,
+                         const struct surface *s, const struct closure *closure) {
+    const float choice = ctx->world->light_count > 1 ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
+    const struct vec2 point = sampler_2d(draw(l, DRAW_LIGHT_POINT));
+    vertex_sample_light(ctx, s, closure, choice, point, 1, &l->shadow);
+    struct contribution *c = &l->shadow.contribution;
+    if (!l->shadow.pending)
+        return;
+    if (p->strict_normals && !same_side(s, c->wi, to_local(&s->point.frame, c->wi)))
+        l->shadow.pending = false;
+    c->weight *= l->beta;
+    c->depth = l->from.depth + 1;
+    c->lobe = l->from.depth ? l->from.lobe : closure->lobes;
 }
 
 // One vertex: emission found, light sampled, direction chosen.
 static void shade(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
                   const struct accel_hit *hit) {
     struct surface s;
+    struct bsdf_sample b = {.lobe = 0};
     world_surface(ctx->world, &l->ray, hit, &s);
     if (l->from.depth > 0 || !p->hide_emitters)
         vertex_add_emission(ctx, i, &s, l->ray.d, l->beta, &l->from);
     const vec3 wo = to_local(&s.point.frame, -l->ray.d);
     const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
-    const bool ends = !closure || !may_contribute(p, l->from.depth + 1) ||
-                      (p->strict_normals && !same_side(&s, -l->ray.d, wo));
-    struct bsdf_sample b = {.lobe = 0};
-    const struct lane_random r = draw(l);
-    if (!ends && closure->lobes & LOBE_SMOOTH) {
-        vertex_sample_light(ctx, &s, closure, r.light_choice, r.light, 1, &l->shadow);
-        struct contribution *c = &l->shadow.contribution;
-        if (l->shadow.pending && p->strict_normals &&
-            !same_side(&s, c->wi, to_local(&s.point.frame, c->wi)))
-            l->shadow.pending = false;
-        c->weight *= l->beta;
-        c->depth = l->from.depth + 1;
-        c->lobe = l->from.depth ? l->from.lobe : closure->lobes;
+    const bool goes_on = closure && may_contribute(p, l->from.depth + 1) &&
+                         (!p->strict_normals || same_side(&s, -l->ray.d, wo));
+    if (goes_on && closure->lobes & LOBE_SMOOTH)
+        sample_light(p, ctx, l, &s, closure);
+    l->alive = false;
+    if (goes_on) {
+        const float lobe = sampler_1d(draw(l, DRAW_LOBE));
+        l->alive = closure_sample(closure, lobe, sampler_2d(draw(l, DRAW_DIRECTION)), &b);
     }
-    const bool scatters = !ends && closure_sample(closure, r.lobe, r.scatter, &b);
     if (!l->first_done && !(b.lobe & LOBE_NULL))
         first_event(ctx, i, l, &s, closure);
-    l->alive = scatters;
-    if (scatters)
-        scatter(p, l, &s, &b, r.roulette);
-    if (l->alive && l->events >= INTEGRATOR_MOST_EVENTS) {
+    if (l->alive && b.lobe & LOBE_NULL)
+        pass_through(l, &s, &b);
+    else if (l->alive)
+        scatter(p, l, &s, &b);
+    if (++l->events >= INTEGRATOR_MOST_EVENTS && l->alive) {
         l->alive = false;
         ctx->truncated++;
     }

@@ -40,6 +40,14 @@ static inline vec3 v3_load(const float p[3]) {
     return (vec3){p[0], p[1], p[2], 0};
 }
 
+// The same where a fourth float may be read (and is dropped).
+static inline vec3 v3_load_padded(const float *p) {
+    typedef float unaligned __attribute__((vector_size(16), aligned(4), may_alias));
+    vec3 v = *(const unaligned *)p;
+    v[3] = 0;
+    return v;
+}
+
 static inline float dot(vec3 a, vec3 b) {
     const vec3 c = a * b;
     return c[0] + c[1] + c[2];

@@ -146,6 +146,8 @@ static spectrum texel(const struct bitmap *self, int x, int y) {
     float v[3];
     if (self->storage == STORE_U8) {
         const uint8_t *p = (const uint8_t *)self->texels + i;
+        if (self->channels == 3) // most pictures
+            return spectrum_rgb(self->decode[p[0]], self->decode[p[1]], self->decode[p[2]]);
         for (int c = 0; c < self->channels; c++)
             v[c] = self->decode[p[c]];
     } else if (self->storage == STORE_HALF) {

@@ -23,11 +23,11 @@ static void triangle_derivatives(const struct mesh *m, const uint32_t i[3], vec3
 }
 
 static void triangle_surface(const struct shape *shape, const struct accel_hit *hit,
-                             struct surface *s) {
+                             bool tangents, struct surface *s) {
     const struct mesh *m = &shape->mesh;
     const uint32_t *i = m->indices[hit->primitive];
-    const vec3 p0 = v3_load(m->positions[i[0]]), p1 = v3_load(m->positions[i[1]]),
-               p2 = v3_load(m->positions[i[2]]);
+    const vec3 p0 = v3_load_padded(m->positions[i[0]]), p1 = v3_load_padded(m->positions[i[1]]),
+               p2 = v3_load_padded(m->positions[i[2]]);
     const float b1 = hit->u, b2 = hit->v, b0 = 1 - b1 - b2;
     const vec3 e1 = p1 - p0, e2 = p2 - p0;
     s->p = b0 * p0 + b1 * p1 + b2 * p2;
@@ -46,7 +46,8 @@ static void triangle_surface(const struct shape *shape, const struct accel_hit *
         const float *t0 = m->uvs[i[0]], *t1 = m->uvs[i[1]], *t2 = m->uvs[i[2]];
         s->point.at.uv = (struct vec2){b0 * t0[0] + b1 * t1[0] + b2 * t2[0],
                                        b0 * t0[1] + b1 * t1[1] + b2 * t2[1]};
-        triangle_derivatives(m, i, e1, e2, &s->point);
+        if (tangents)
+            triangle_derivatives(m, i, e1, e2, &s->point);
     }
     s->point.frame.n = ns;
 }
@@ -100,7 +101,7 @@ void world_surface(const struct world *w, const struct ray *ray, const struct ac
     s->instance = hit->instance;
     s->point.wavelengths.count = 0;
     if (shape->kind == SHAPE_MESH)
-        triangle_surface(shape, hit, s);
+        triangle_surface(shape, hit, w->tangents_matter, s);
     else
         quadric_shading(shape->kind, &w->quadrics[hit->shape], ray, hit->t, s);
     if (hit->instance != SCENE_NONE)

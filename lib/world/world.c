@@ -20,7 +20,9 @@ static bool prepare_bsdfs(struct world *w, struct scene *s) {
         const struct bsdf_type *type = bsdf_type_of(o);
         if (type->prepare && !type->prepare(o, &s->arena))
             return false;
-        w->shadow_rays_may_pass |= (type->lobes(o->data) & LOBE_NULL) != 0;
+        const uint32_t lobes = type->lobes(o->data);
+        w->shadow_rays_may_pass |= (lobes & LOBE_NULL) != 0;
+        w->tangents_matter |= (lobes & LOBE_ANISOTROPIC) != 0;
     }
     return true;
 }
