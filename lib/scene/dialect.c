@@ -98,6 +98,13 @@ static void upgrade(struct reader *r, struct xml_node *node) {
     for (int i = 0; i < TAGS; i++)
         if (tags[i].was && strcmp(tags[i].was, node->tag) == 0)
             node->tag = tags[i].name;
+    const char *type = xml_get(node, "type");
+    if (strcmp(node->tag, "emitter") == 0 && type && strcmp(type, "sunsky") == 0) {
+        struct xml_node *up = xml_new("string", node->at, r->arena); // version 3's zenith is z
+        xml_set(up, "name", "up", r->arena);
+        xml_set(up, "value", "y", r->arena);
+        xml_append(node, up);
+    }
     const char *name = xml_get(node, "name");
     if (name && strcmp(node->tag, "default") != 0)
         xml_set(node, "name", snake_case(name, r->arena), r->arena);
