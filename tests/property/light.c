@@ -190,6 +190,14 @@ static struct object *make_light(const char *name, const char *overrides,
     return o;
 }
 
+static struct shape *meshes[16];
+static int mesh_count;
+
+static struct shape *keep_mesh(struct shape *s) {
+    meshes[mesh_count++] = s;
+    return s;
+}
+
 static struct shape *new_mesh(const float (*positions)[3], uint32_t vertices,
                               const uint32_t (*indices)[3], uint32_t triangles) {
     struct shape *s = arena_alloc(&arena, sizeof *s);
@@ -200,7 +208,7 @@ static struct shape *new_mesh(const float (*positions)[3], uint32_t vertices,
     s->mesh.indices = mem_array(triangles, sizeof *s->mesh.indices);
     memcpy(s->mesh.positions, positions, vertices * sizeof *positions);
     memcpy(s->mesh.indices, indices, triangles * sizeof *indices);
-    return s;
+    return keep_mesh(s);
 }
 
 static struct shape *new_quadric(enum shape_kind kind, const struct transform *to_world,
@@ -216,7 +224,7 @@ static struct shape *new_rectangle(bool flip) {
     s->name = "rectangle";
     s->flip_normals = flip;
     mesh_make_rectangle(&s->mesh);
-    return s;
+    return keep_mesh(s);
 }
 
 static void add_rectangles(void) {
@@ -253,6 +261,7 @@ static void add_cube(void) {
     struct shape *s = arena_alloc(&arena, sizeof *s);
     s->name = "cube";
     mesh_make_cube(&s->mesh);
+    keep_mesh(s);
     struct object *light = make_light("area", "radiance=1", s);
     add_case("cube", CHART_TRIANGLES, light, s, v3(2, 1.5f, 3));
 }
@@ -463,6 +472,8 @@ int main(void) {
     for (int i = 0; i < case_count; i++)
         if (case_type(&cases[i])->finish && (i == 0 || cases[i].light != cases[i - 1].light))
             case_type(&cases[i])->finish(cases[i].light->data);
+    for (int i = 0; i < mesh_count; i++)
+        mesh_finish(&meshes[i]->mesh);
     arena_finish(&arena);
     return check_result();
 }
