@@ -47,10 +47,14 @@ static vec3 sample_ggx(const struct microfacet *m, vec3 v, struct vec2 u) {
 //
 //     g(x) = c (1 + x) + e / sqrt(pi),    g'(x) = c - s,    g''(x) = -s'(x) = -sqrt(pi) / (2 e)
 //
-// found by Halley's method inside a bracket, from the solution for grazing v (Jakob 2014, An
-// Improved Visible Normal Sampling Routine for the Beckmann Distribution; there divided by c, which
-// overflows). The last step is taken in s: with ds = s' dx,
-// s(x + dx) = s + ds + s ds^2 + (1 + 4 s^2) ds^3 / 3 + ...  The error is below 3e-5 of the total.
+// found by Halley's method inside a bracket (Newton's: Jakob 2014, An Improved Visible Normal
+// Sampling Routine for the Beckmann Distribution; there divided by c, which overflows). The start
+// mixes the solutions for grazing v (c = 0) and for v at the normal; with it one step nearly always
+// suffices. The last step is taken in s: with ds = s' dx,
+//
+//     s(x + dx) = s + ds / (1 - s ds - (1 + s^2) ds^2 / 3) + O(ds^4)
+//
+// In all, the distribution function is met to 5e-5.
 static float sample_beckmann_slope(float c, float u) {
     const float inv_sqrt_pi = 0.56418958f, half_sqrt_pi = 0.88622693f;
     u = clampf(u, 1e-7f, 1 - 1e-7f);
@@ -59,7 +63,8 @@ static float sample_beckmann_slope(float c, float u) {
     const float e_end = fast_exp(-c * c), end = 1 - erfc_given_exp(c, e_end);
     const float total = c * (1 + end) + inv_sqrt_pi * e_end;
     float lo = -1, hi = end, s = 0;
-    float x = end - (end + 1) * (1 - erfc_given_exp(sqrtf(-fast_log(u)), u));
+    const float grazing = end - (end + 1) * (1 - erfc_given_exp(sqrtf(-fast_log(u)), u));
+    float x = lerpf(1 / (1 + 0.3f * c * c), (1 + end) * u - 1, grazing);
     for (int i = 0; i < 12; i++) {
         x = x > lo && x < hi ? x : 0.5f * (lo + hi);
         s = erf_inverse(x);
@@ -70,8 +75,8 @@ static float sample_beckmann_slope(float c, float u) {
         else
             lo = x;
         const float dx = -2 * g * g1 / (2 * g1 * g1 + g * slope), ds = dx * slope;
-        if (fabsf(ds) < 0.03f) {
-            s += ds * (1 + ds * (s + ds * (1 + 4 * s * s) * (1.0f / 3)));
+        if (fabsf(ds) * (1 + 0.5f * s * s) < 0.1f) {
+            s += ds / (1 - ds * (s + ds * (1 + s * s) * (1.0f / 3)));
             break;
         }
         x += dx;
