@@ -2,6 +2,7 @@
 // Maps from the unit square to the domains that are sampled, each with its density.
 #pragma once
 
+#include "math/elementary.h"
 #include "math/vec.h"
 
 // Concentric map of Shirley and Chiu 1997. pdf = 1/pi per unit area.
@@ -9,15 +10,13 @@ static inline struct vec2 warp_disk(struct vec2 u) {
     const float x = 2 * u.x - 1, y = 2 * u.y - 1;
     if (x == 0 && y == 0)
         return (struct vec2){0, 0};
-    float r, phi;
+    float sine, cosine;
     if (fabsf(x) > fabsf(y)) {
-        r = x;
-        phi = (PI / 4) * (y / x);
-    } else {
-        r = y;
-        phi = PI / 2 - (PI / 4) * (x / y);
+        sincos_octant((PI / 4) * (y / x), &sine, &cosine);
+        return (struct vec2){x * cosine, x * sine};
     }
-    return (struct vec2){r * cosf(phi), r * sinf(phi)};
+    sincos_octant((PI / 4) * (x / y), &sine, &cosine); // of pi/2 - phi
+    return (struct vec2){y * sine, y * cosine};
 }
 
 // pdf_sa = cos/pi, z up
@@ -30,7 +29,9 @@ static inline vec3 warp_cosine_hemisphere(struct vec2 u) {
 static inline vec3 warp_sphere(struct vec2 u) {
     const float z = 1 - 2 * u.x;
     const float r = safe_sqrt(1 - z * z);
-    return v3(r * cosf(TWO_PI * u.y), r * sinf(TWO_PI * u.y), z);
+    float sine, cosine;
+    sincos_turn(u.y, &sine, &cosine);
+    return v3(r * cosine, r * sine, z);
 }
 
 // Barycentric coordinates, uniform over a triangle (Heitz 2019, A low-distortion map).
