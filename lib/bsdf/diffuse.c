@@ -14,7 +14,7 @@ struct diffuse_closure {
 
 static const struct param params[] = {
     {"reflectance", PARAM_TEXTURE, offsetof(struct diffuse, reflectance), .def = "0.5", .max = 1,
-     .unit = "", .help = "share of the light that is reflected"},
+     .unit = "", .help = "share of the light that is reflected", .aka = "diffuse_reflectance"},
     PARAM_END,
 };
 
