@@ -66,6 +66,8 @@ static void trace_one(const struct simple *p, struct trace_context *ctx, int lan
         if (!closure_sample(closure, lobe, sampler_2d(&sampler), &b))
             return;
         beta *= b.weight;
+        if (spectrum_is_black(beta)) // also by underflow, in closed rooms
+            return;
         const bool passes = (b.lobe & LOBE_NULL) != 0;
         const vec3 wi = passes ? ray.d : to_world(&s.point.frame, b.wi);
         if (!passes) {
