@@ -7,7 +7,8 @@
 // two-sided p-value, agreement when p > 1 - 0.99^(1/pixels) (Sidak's correction of a 1 % level); the
 // picture passes when at least 99.75 % of its values agree. Block and picture means: noise of both
 // pictures, with values of different pixels taken as independent (a box filter), a floor for
-// rounding of 16 ulp of the mean, and the same correction for the number of means tested.
+// rounding of max(16, sqrt(ref_samples)) ulp of the mean, and the same correction for the number of
+// means tested.
 #pragma once
 
 #include "image/image.h"

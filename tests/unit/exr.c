@@ -3,11 +3,11 @@
 #include "check.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/mem.h"
 #include "image/image.h"
 #include "math/hash.h"
 
@@ -149,6 +149,7 @@ static void refusals_leave_the_old_file(void) {
     CHECK(!image_write_exr(path, &im, NULL));
     CHECK(!image_write_exr("no/such/folder/a.exr", &im, NULL));
     CHECK(image_read(path, &back) && back.channels == 2);
+    image_finish(&back);
     CHECK(!image_read("no_such_file.exr", &back) && !back.pixels);
     CHECK(file_write("not.exr", "hello", 5) && !image_read("not.exr", &back));
     unlink("not.exr");
@@ -169,7 +170,7 @@ static void truncated_files_are_refused(void) {
         CHECK(!image_read("cut.exr", &back));
     }
     unlink("cut.exr");
-    free(data);
+    mem_free(data);
     image_finish(&im);
 }
 

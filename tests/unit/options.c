@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of options: values, defaults, and every kind of mistake with its message.
+#include "check.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#include "base/options.h"
+#include "capture.h"
+
+struct values {
+    bool flag;
+    int number, size[2], choice;
+    uint64_t seed;
+    double real, seconds;
+    const char *text, *first;
+    struct option_list defines, rest;
+};
+
+#define AT(member) offsetof(struct values, member)
+static const char *const colours[] = {"red", "green", NULL};
+static const struct option_spec specs[] = {
+    {.name = "flag", .letter = 'f', .type = OPTION_FLAG, .offset = AT(flag), .help = "a flag"},
+    {.name = "number", .letter = 'n', .type = OPTION_INT, .offset = AT(number), .argument = "N",
+     .help = "a number", .def = "7", .min = 1, .max = 10},
+    {.name = "size", .type = OPTION_INTS, .offset = AT(size), .argument = "WxH", .values = 2,
+     .min = 1, .max = 65536, .help = "a size"},
+    {.name = "colour", .type = OPTION_CHOICE, .offset = AT(choice), .argument = "NAME",
+     .choices = colours, .def = "green", .help = "a colour"},
+    {.name = "seed", .type = OPTION_COUNT, .offset = AT(seed), .argument = "N", .help = "a seed"},
+    {.name = "real", .type = OPTION_NUMBER, .offset = AT(real), .argument = "X", .help = "a real"},
+    {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "T",
+     .help = "a time"},
+    {.name = "text", .type = OPTION_TEXT, .offset = AT(text), .argument = "T", .help = "a text"},
+    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
+     .argument = "K=V", .help = "definitions"},
+    OPTION_END,
+};
+static const struct option_argument arguments[] = {
+    {.name = "FIRST", .offset = AT(first), .help = "the first"},
+    {.name = "REST", .offset = AT(rest), .help = "the rest", .optional = true, .repeated = true},
+    {.name = NULL},
+};
+static const struct option_table table = {.options = specs, .arguments = arguments};
+
+enum { MOST = 24 };
+
+// Parses the words of a line; values are for the caller to finish.
+static enum options_result parse(const char *line, struct values *v) {
+    static char copy[1024];
+    char *argv[MOST + 1] = {(char[]){"program"}};
+    int argc = 1;
+    snprintf(copy, sizeof copy, "%s", line);
+    for (char *w = strtok(copy, " "); w && argc < MOST; w = strtok(NULL, " "))
+        argv[argc++] = w;
+    *v = (struct values){0};
+    capture_begin();
+    const enum options_result result = options_parse(&table, argc, argv, v);
+    capture_end();
+    return result;
+}
+
+static void values_and_defaults_arrive(void) {
+    struct values v;
+    CHECK(parse("a", &v) == OPTIONS_OK);
+    CHECK(!v.flag && v.number == 7 && v.choice == 1 && !v.text && strcmp(v.first, "a") == 0);
+    CHECK(v.rest.count == 0 && v.defines.count == 0);
+    options_finish(&table, &v);
+    CHECK(parse("a -f --number=3 b --size 640x480 -D x=1 -Dy=2 --seed 18446744073709551615 "
+                "--real -1.5e-3 --time 1.5h --text --odd c --colour red",
+                &v) == OPTIONS_OK);
+    CHECK(v.flag && v.number == 3 && v.size[0] == 640 && v.size[1] == 480 && v.choice == 0);
+    CHECK(v.seed == UINT64_MAX && v.real == -1.5e-3 && v.seconds == 5400);
+    CHECK(v.text && strcmp(v.text, "--odd") == 0);
+    CHECK(v.defines.count == 2 && strcmp(v.defines.items[1], "y=2") == 0);
+    CHECK(v.rest.count == 2 && strcmp(v.rest.items[0], "b") == 0);
+    options_finish(&table, &v);
+    CHECK(parse("a -n 2 -n 9 --num 4", &v) == OPTIONS_OK && v.number == 4); // the last one wins
+    options_finish(&table, &v);
+    CHECK(parse("a -- -f", &v) == OPTIONS_OK && !v.flag && v.rest.count == 1);
+    options_finish(&table, &v);
+}
+
+static void mistakes_are_named(void) {
+    static const char *const cases[][2] = {
+        {"a --nmber 3", "the nearest is --number"},
+        {"a --flagg", "the nearest is --flag"},
+        {"a --zzzzzzzzzz", "unknown option '--zzzzzzzzzz'"},
+        {"a -z", "unknown option '-z'"},
+        {"a --number", "--number: found nothing"},
+        {"a -n", "--number: found nothing"},
+        {"a --flag=1", "--flag takes no value"},
+        {"a --number 0", "from 1 to 10"},
+        {"a --number 11", "'11'"},
+        {"a --number 3x", "'3x'"},
+        {"a --number 99999999999", "whole number"},
+        {"a --size 640", "WxH"},
+        {"a --size 640x0", "WxH"},
+        {"a --size 640x480x3", "WxH"},
+        {"a --colour blue", "one of red, green"},
+        {"a --seed -1", "without sign"},
+        {"a --real nan", "a number"},
+        {"a --real 1e999", "a number"},
+        {"a --time 5d", "15m"},
+        {"a --time -5", "15m"},
+        {"-f", "FIRST is missing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct values v;
+        CHECK(parse(cases[i][0], &v) == OPTIONS_BAD);
+        if (!captured_has(cases[i][1]))
+            printf("%s: %s", cases[i][0], captured);
+        CHECK(captured_has(cases[i][1]));
+        options_finish(&table, &v);
+    }
+}
+
+static void help_wins(void) {
+    struct values v;
+    CHECK(parse("--number 3 --help", &v) == OPTIONS_HELP);
+    CHECK(parse("-h", &v) == OPTIONS_HELP);
+}
+
+int main(void) {
+    values_and_defaults_arrive();
+    mistakes_are_named();
+    help_wins();
+    return check_result();
+}
