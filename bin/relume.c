@@ -20,13 +20,18 @@ const struct registry subcommands = {"subcommand", entries};
 static void print_help(void) {
     printf("usage: relume SUBCOMMAND [arguments] [options]\n\n"
            "An offline path tracer with precomputation tools.\n\nSubcommands:\n");
-    for (const struct entry *const *e = entries; *e; e++)
-        printf("  %-12s %s\n", (*e)->name, (*e)->help);
+    registry_print(&subcommands);
     printf("\nOptions:\n"
            "  -h, --help     print this text; relume SUBCOMMAND --help explains one subcommand\n"
            "      --version  print the version\n\n"
            "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 valid output but the stop criterion was\n"
            "not reached.\n");
+}
+
+void subcommand_print_help(const struct subcommand *s) {
+    char program[64];
+    snprintf(program, sizeof program, "relume %s", s->entry.name);
+    options_help(&s->options, program, s->entry.help);
 }
 
 // The command line in one string, arguments with unusual characters in single quotes.
@@ -46,9 +51,7 @@ static int run(const struct subcommand *s, int argc, char **argv, const char *co
     if (result == OPTIONS_OK) {
         code = s->run(values, command);
     } else if (result == OPTIONS_HELP) {
-        char program[64];
-        snprintf(program, sizeof program, "relume %s", s->entry.name);
-        options_help(&s->options, program, s->entry.help);
+        subcommand_print_help(s);
         code = EXIT_DONE;
     }
     options_finish(&s->options, values);

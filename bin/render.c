@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume render: a picture from a scene file.
-#include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/file.h"
-#include "base/json.h"
-#include "base/progress.h"
 #include "base/log.h"
 #include "base/mem.h"
-#include "driver/job.h"
+#include "base/progress.h"
 #include "driver/stop.h"
+#include "render_report.h"
 #include "subcommand.h"
 
 struct values {
@@ -56,7 +52,7 @@ static const struct option_spec options[] = {
      .help = "write direct/indirect x diffuse/glossy/specular layers"},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
     {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME; may be repeated"},
+     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
     {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
      .help = "unknown scene parameters warn instead of failing"},
     OPTION_THREADS(struct values, threads),
@@ -64,21 +60,6 @@ static const struct option_spec options[] = {
     OPTION_JSON(struct values, json),
     OPTION_END,
 };
-
-// "name=value" texts as defines; the names are copied into an arena. NULL after a message.
-static struct scene_define *parse_defines(const struct option_list *list, struct arena *arena) {
-    struct scene_define *d = arena_alloc(arena, (list->count + 1) * sizeof *d);
-    for (size_t i = 0; i < list->count; i++) {
-        const char *equals = strchr(list->items[i], '=');
-        if (!equals || equals == list->items[i]) {
-            log_error("-D %s: expected NAME=VALUE", list->items[i]);
-            return NULL;
-        }
-        d[i].name = arena_printf(arena, "%.*s", (int)(equals - list->items[i]), list->items[i]);
-        d[i].value = equals + 1;
-    }
-    return d;
-}
 
 static void show_progress(void *user, double done, const struct film *film) {
     char note[64] = "";
@@ -88,62 +69,15 @@ static void show_progress(void *user, double done, const struct film *film) {
     progress_update(user, done, note);
 }
 
-// What was measured, for people and as JSON.
-struct outcome {
-    struct render_result render;
-    uint64_t rejected, overflows;
-    double noise; // negative: not measured
-};
-
-static void report(const struct values *v, const struct outcome *o) {
-    const struct render_result *t = &o->render;
-    if (o->rejected)
-        log_warn("%" PRIu64 " samples were not finite and count as black", o->rejected);
-    if (t->truncated)
-        log_warn("%" PRIu64 " of %" PRIu64 " paths met the cap of %d events and were cut: the "
-                 "picture is too dark by what they would have brought", t->truncated, t->paths,
-                 INTEGRATOR_MOST_EVENTS);
-    if (o->overflows)
-        log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
-                 o->overflows);
-    if (!v->quiet)
-        log_info("%s: %" PRIu64 " samples per pixel in %.2f s, %.2f Mpaths/s, %.2f Mrays/s",
-                 v->output, t->samples, t->seconds, (double)t->paths / t->seconds * 1e-6,
-                 (double)(t->rays + t->shadow_rays) / t->seconds * 1e-6);
-}
-
-static void report_json(const struct values *v, const struct job *job, const struct outcome *o) {
-    const struct render_result *t = &o->render;
-    struct json *j = json_new_object();
-    json_add_text(j, "output", v->output);
-    json_add_count(j, "samples", (int64_t)t->samples);
-    json_add_number(j, "seconds", t->seconds);
-    json_add_number(j, "load_seconds", job->load_seconds);
-    json_add_number(j, "accel_seconds", job->world->accel_seconds);
-    json_add_count(j, "accel_bytes", (int64_t)accel_bytes(job->world->accel));
-    json_add_count(j, "peak_bytes", (int64_t)mem_peak());
-    json_add_count(j, "triangles", (int64_t)job->triangles);
-    json_add_count(j, "paths", (int64_t)t->paths);
-    json_add_count(j, "rays", (int64_t)t->rays);
-    json_add_count(j, "shadow_rays", (int64_t)t->shadow_rays);
-    json_add_count(j, "truncated_paths", (int64_t)t->truncated);
-    json_add_count(j, "rejected_samples", (int64_t)o->rejected);
-    if (o->noise >= 0)
-        json_add_number(j, "noise", o->noise);
-    json_print(j, false);
-    json_destroy(j);
-}
-
 static int render_and_write(const struct values *v, const char *command, struct job *job,
                             struct progress *progress) {
-    struct outcome o;
+    struct render_outcome o = {.output = v->output};
     struct image im = {0};
     const struct image_exr_options exr = {.half = v->half, .half_overflows = &o.overflows};
     struct film *film = job_render(job, &o.render);
     progress_end(progress);
     o.rejected = film_rejected(film);
     o.noise = film_noise(film);
-    o.overflows = 0;
     bool written = job_image(job, film, &o.render, &im);
     film_destroy(film);
     if (written) {
@@ -154,9 +88,11 @@ static int render_and_write(const struct values *v, const char *command, struct 
     image_finish(&im);
     if (!written)
         return EXIT_FAILED;
-    report(v, &o);
+    render_report_warnings(&o);
+    if (!v->quiet)
+        render_report(&o);
     if (v->json)
-        report_json(v, job, &o);
+        render_report_json(job, &o);
     return o.render.stopped ? EXIT_UNCONVERGED : EXIT_DONE;
 }
 
@@ -182,13 +118,37 @@ static int run_job(const struct values *v, const char *command, const struct sce
     return code;
 }
 
+// Whether a name given as an option stands for something.
+static bool is_known(const struct registry *r, const char *name) {
+    if (!name || registry_find(r, name))
+        return true;
+    const char *nearest = registry_nearest(r, name);
+    log_error("--%s: found '%s'%s%s%s (see relume help %s)", r->kind, name,
+              nearest ? "; the nearest is '" : "", nearest ? nearest : "", nearest ? "'" : "",
+              r->kind);
+    return false;
+}
+
 static int run(const void *values, const char *command) {
     const struct values *v = values;
+    uint32_t aovs;
+    if (!is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
+        (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
+        return EXIT_USAGE;
     struct arena arena = {0};
-    const struct scene_define *defines = parse_defines(&v->defines, &arena);
+    const struct scene_define *defines = defines_parse(&v->defines, &arena);
     const int code = defines ? run_job(v, command, defines) : EXIT_USAGE;
     arena_finish(&arena);
     return code;
+}
+
+static void print_registries(void) {
+    printf("\nIntegrators:\n");
+    registry_print(&integrators);
+    printf("\nSamplers:\n");
+    registry_print(&samplers);
+    printf("\nrelume help explains them and all that a scene may hold; relume help integrator path,\n"
+           "for instance, lists the parameters of path.\n");
 }
 
 const struct subcommand subcommand_render = {
@@ -197,9 +157,10 @@ const struct subcommand subcommand_render = {
     .options = {.options = options, .arguments = arguments,
                 .description = "Path traces SCENE. Stops at --spp samples per pixel, or on Ctrl-C "
                                "with what is complete (exit code 3).",
-                .examples = "relume render scene.xml -o out.exr --spp 256\n"
-                            "relume render scene.xml -o out.exr --size 640x360 --aov albedo,N,Z "
+                .examples = "  relume render scene.xml -o out.exr --spp 256\n"
+                            "  relume render scene.xml -o out.exr --size 640x360 --aov albedo,N,Z "
                             "--variance\n"
-                            "relume render scene.xml -o lights.exr --light-groups"},
+                            "  relume render scene.xml -o lights.exr --light-groups\n",
+                .more_help = print_registries},
     .run = run,
 };

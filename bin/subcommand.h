@@ -26,3 +26,6 @@ struct subcommand {
 #undef X
 
 extern const struct registry subcommands;
+
+// What `relume NAME --help` prints.
+void subcommand_print_help(const struct subcommand *s);

@@ -45,7 +45,7 @@ struct option_argument {    // a positional one
     const char *name;       // placeholder, as "SCENE"
     size_t offset;          // const char *, or struct option_list if repeated
     const char *help;
-    bool optional, repeated; // only the last one may be either
+    bool optional, repeated; // none follows a repeated one, only optional ones an optional one
 };
 
 struct option_table {

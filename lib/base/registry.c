@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/registry.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static int min3(int a, int b, int c) {
@@ -60,6 +61,11 @@ const char *registry_nearest(const struct registry *r, const char *name) {
             consider(*a, (*e)->name, name, &best, &nearest);
     }
     return nearest;
+}
+
+void registry_print(const struct registry *r) {
+    for (const struct entry *const *e = r->entries; *e; e++)
+        printf("  %-18s%s\n", (*e)->name, (*e)->help);
 }
 
 const struct param *param_find(const struct entry *e, const char *name) {

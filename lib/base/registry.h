@@ -74,6 +74,8 @@ struct registry {
 const struct entry *registry_find(const struct registry *r, const char *name);
 // The name (not alias) nearest to a mistyped one, or NULL where nothing is near.
 const char *registry_nearest(const struct registry *r, const char *name);
+// A line "  name  help" for each entry on standard output.
+void registry_print(const struct registry *r);
 const struct param *param_find(const struct entry *e, const char *name);
 const char *param_nearest(const struct entry *e, const char *name);
 

@@ -14,6 +14,20 @@ struct scene_registries job_registries(void) {
                                      &integrators};
 }
 
+struct scene_define *defines_parse(const struct option_list *texts, struct arena *arena) {
+    struct scene_define *d = arena_alloc(arena, (texts->count + 1) * sizeof *d);
+    for (size_t i = 0; i < texts->count; i++) {
+        const char *text = texts->items[i], *equals = strchr(text, '=');
+        if (!equals || equals == text) {
+            log_error("-D %s: expected NAME=VALUE", text);
+            return NULL;
+        }
+        d[i].name = arena_printf(arena, "%.*s", (int)(equals - text), text);
+        d[i].value = equals + 1;
+    }
+    return d;
+}
+
 static bool choose_crop(const struct job_options *o, const struct film_settings *s,
                         struct film_options *film) {
     const int *c = o->crop;

@@ -2,6 +2,7 @@
 // A picture from a scene file: everything between the command line and the finished image.
 #pragma once
 
+#include "base/options.h"
 #include "driver/light_groups.h"
 #include "driver/render.h"
 
@@ -34,6 +35,9 @@ struct job {
 
 // The registries of everything a scene may name.
 struct scene_registries job_registries(void);
+
+// Texts "NAME=VALUE" of -D as defines; the names live in the arena. NULL after an error message.
+struct scene_define *defines_parse(const struct option_list *texts, struct arena *arena);
 
 // Reads and builds. false after an error message, with nothing to close.
 bool job_open(struct job *job, const struct job_options *options);

@@ -233,9 +233,8 @@ bool param_accepts(const struct param *p, const struct xml_node *target) {
     return (has_tag(target, "texture") || has_tag(target, "spectrum")) && param_is_colour(p->type);
 }
 
-// The tag with which a default would stand in a file.
-static const char *default_tag(const struct param *p) {
-    const bool word = isalpha((unsigned char)p->def[0]);
+const char *param_tag(const struct param *p, const char *value) {
+    const bool word = isalpha((unsigned char)value[0]);
     switch (p->type) {
     case PARAM_BOOL: return "boolean";
     case PARAM_INT: return "integer";
@@ -262,7 +261,7 @@ bool param_read_default(struct reader *r, const struct xml_node *owner, const st
                      xml_get(owner, "type"), p->name, p->help ? p->help : "");
         return false;
     }
-    struct xml_node *node = xml_new(default_tag(p), owner->at, r->arena);
+    struct xml_node *node = xml_new(param_tag(p, p->def), owner->at, r->arena);
     const bool object = p->type == PARAM_BSDF || p->type == PARAM_INTEGRATOR ||
                         (param_is_colour(p->type) && has_tag(node, "spectrum"));
     xml_set(node, object ? "type" : "value", p->def, r->arena);

@@ -16,5 +16,7 @@ bool param_read_object(struct reader *r, struct where at, struct xml_node *targe
 // From the table's default; an error when there is none and the parameter is not optional.
 bool param_read_default(struct reader *r, const struct xml_node *owner, const struct param *p,
                         void *data);
+// The element that would give this parameter that value in a file.
+const char *param_tag(const struct param *p, const char *value);
 // Whether a nested object may fill this parameter.
 bool param_accepts(const struct param *p, const struct xml_node *target);

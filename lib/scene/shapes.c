@@ -2,6 +2,7 @@
 // Shapes, groups of shapes and their instances, and the lights that stand in shapes.
 #include <string.h>
 
+#include "scene/language.h"
 #include "scene/reader.h"
 
 struct shape_data {
@@ -51,23 +52,29 @@ static const struct param cylinder_params[] = {
 };
 static const struct param group_params[] = {PARAM_END};
 
+#define SHAPE(name, help, params) {name, help, NULL, params, sizeof(struct shape_data)}
+
 static const struct entry shape_types[] = {
-    {"rectangle", "[-1,1]^2 at z = 0", NULL, plain_params, sizeof(struct shape_data)},
-    {"cube", "[-1,1]^3", NULL, plain_params, sizeof(struct shape_data)},
-    {"sphere", "centre and radius", NULL, sphere_params, sizeof(struct shape_data)},
-    {"disk", "radius 1 at z = 0", NULL, plain_params, sizeof(struct shape_data)},
-    {"cylinder", "from p0 to p1, open", NULL, cylinder_params, sizeof(struct shape_data)},
-    {"shapegroup", "shapes for instances", NULL, group_params, sizeof(struct shape_data)},
-    {"instance", "a shapegroup, placed", NULL, plain_params, sizeof(struct shape_data)},
-    {"obj", "", NULL, obj_params, sizeof(struct shape_data)},
-    {"mesh", "any mesh file", NULL, mesh_params, sizeof(struct shape_data)},
+    SHAPE("rectangle", "square [-1,1]^2 at z = 0, normal +z", plain_params),
+    SHAPE("cube", "box [-1,1]^3", plain_params),
+    SHAPE("sphere", "exact sphere", sphere_params),
+    SHAPE("disk", "exact disk of radius 1 at z = 0, normal +z", plain_params),
+    SHAPE("cylinder", "exact cylinder from p0 to p1, open ends", cylinder_params),
+    SHAPE("shapegroup", "shapes for instances to place, unseen by itself", group_params),
+    SHAPE("instance", "a shapegroup, placed without copying it", plain_params),
+    SHAPE("obj", "mesh of an OBJ file", obj_params),
+    SHAPE("mesh", "mesh of any other file", mesh_params),
 };
 static const struct entry *const shape_entries[] = {
     &shape_types[0], &shape_types[1], &shape_types[2], &shape_types[3], &shape_types[4],
-    &shape_types[5], &shape_types[6], &shape_types[7], NULL};
-static const struct registry shape_registry = {"shape", shape_entries};
+    &shape_types[5], &shape_types[6], NULL};
+const struct registry scene_shapes = {"shape", shape_entries};
 
 enum { RECTANGLE, CUBE, SPHERE, DISK, CYLINDER, GROUP, INSTANCE, OBJ, MESH };
+
+const struct param *scene_mesh_params(const struct entry *format) {
+    return shape_types[strcmp(format->name, "obj") == 0 ? OBJ : MESH].params;
+}
 
 // ---- what stands in a shape -----------------------------------------------------------------
 
@@ -306,10 +313,10 @@ static int shape_type(const struct xml_node *node, const struct entry **mesh_rea
     *mesh_reader = registry_find(&mesh_readers, type);
     if (*mesh_reader)
         return MESH;
-    const struct entry *e = registry_find(&shape_registry, type);
-    if (e && e != &shape_types[OBJ])
+    const struct entry *e = registry_find(&scene_shapes, type);
+    if (e)
         return (int)(e - shape_types);
-    const char *nearest = registry_nearest(&shape_registry, type);
+    const char *nearest = registry_nearest(&scene_shapes, type);
     nearest = nearest ? nearest : registry_nearest(&mesh_readers, type);
     log_error_at(node->at, "shape \"%s\" is not known%s%s%s", type,
                  nearest ? "; did you mean \"" : "", nearest ? nearest : "",

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "math/colour.h"
+#include "scene/language.h"
 #include "scene/reader.h"
 
 enum { MOST_SAMPLES = 1 << 20 };
@@ -238,7 +239,8 @@ static const struct param srgb_params[] = {
     PARAM_END,
 };
 static const struct param blackbody_params[] = {
-    {"temperature", PARAM_FLOAT, offsetof(struct typed, temperature), .unit = "K", .help = ""},
+    {"temperature", PARAM_FLOAT, offsetof(struct typed, temperature), .min = 100,
+     .max = 1e6, .unit = "K", .help = "of the black body"},
     {"scale", PARAM_FLOAT, offsetof(struct typed, scale), .def = "1", .help = "factor"},
     PARAM_END,
 };
@@ -247,12 +249,15 @@ static const struct param regular_params[] = {
      .help = "of the first value", .aka = "lambda_min"},
     {"wavelength_max", PARAM_FLOAT, offsetof(struct typed, wavelength_max), .unit = "nm",
      .help = "of the last value", .aka = "lambda_max"},
-    {"values", PARAM_STRING, offsetof(struct typed, values), .help = "numbers"},
+    {"values", PARAM_STRING, offsetof(struct typed, values),
+     .help = "numbers, separated by blanks or commas"},
     PARAM_END,
 };
 static const struct param irregular_params[] = {
-    {"wavelengths", PARAM_STRING, offsetof(struct typed, wavelengths), .unit = "nm", .help = ""},
-    {"values", PARAM_STRING, offsetof(struct typed, values), .help = "numbers"},
+    {"wavelengths", PARAM_STRING, offsetof(struct typed, wavelengths), .unit = "nm",
+     .help = "as many numbers as values"},
+    {"values", PARAM_STRING, offsetof(struct typed, values),
+     .help = "numbers, separated by blanks or commas"},
     PARAM_END,
 };
 
@@ -267,10 +272,10 @@ static const struct entry types[] = {
 
 static const struct entry *const entries[] = {&types[0], &types[1], &types[2], &types[3],
                                               &types[4], &types[5], NULL};
-static const struct registry spectra = {"spectrum", entries};
+const struct registry scene_spectra = {"spectrum", entries};
 
 bool spectrum_is_type(const char *type) {
-    return registry_find(&spectra, type) != NULL;
+    return registry_find(&scene_spectra, type) != NULL;
 }
 
 static int number_list(const char *text, double **out) {
@@ -304,7 +309,7 @@ static bool read_lists(const struct typed *t, bool regular, enum param_type use,
 
 static bool read_typed(struct reader *r, const struct xml_node *node, enum param_type use,
                        spectrum *out) {
-    const struct entry *e = object_entry(&spectra, node);
+    const struct entry *e = object_entry(&scene_spectra, node);
     struct typed t = {0};
     if (!e || !object_fill(r, node, e, &t, false, NULL, NULL))
         return false;

@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <string.h>
 
+#include "scene/language.h"
 #include "scene/reader.h"
 
 // ---- film -----------------------------------------------------------------------------------
@@ -22,8 +23,10 @@ static const struct param film_params[] = {
      .help = "left edge of what is rendered"},
     {"crop_offset_y", PARAM_INT, FIELD(crop_offset_y), .def = "0", .min = 0, .max = 65535,
      .help = "upper edge of what is rendered"},
-    {"crop_width", PARAM_INT, FIELD(crop_width), SIZE, .optional = true, .help = "of that"},
-    {"crop_height", PARAM_INT, FIELD(crop_height), SIZE, .optional = true, .help = "of that"},
+    {"crop_width", PARAM_INT, FIELD(crop_width), SIZE, .optional = true,
+     .help = "width of what is rendered; absent: to the right edge"},
+    {"crop_height", PARAM_INT, FIELD(crop_height), SIZE, .optional = true,
+     .help = "height of what is rendered; absent: to the lower edge"},
     {"pixel_format", PARAM_STRING, FIELD(pixel_format), .def = "rgb",
      .help = "with alpha: rgba, luminance_alpha"},
     // of the file that Mitsuba would write
@@ -39,10 +42,10 @@ static const struct param film_params[] = {
 
 static const char *const film_aliases[] = {"ldrfilm", "tiledhdrfilm", "mfilm", "exrfilm",
                                            "pngfilm", NULL};
-static const struct entry film_entry = {"hdrfilm", "the picture", film_aliases, film_params,
-                                        sizeof(struct film_data)};
+static const struct entry film_entry = {"hdrfilm", "size and crop of the picture", film_aliases,
+                                        film_params, sizeof(struct film_data)};
 static const struct entry *const film_entries[] = {&film_entry, NULL};
-static const struct registry films = {"film", film_entries};
+const struct registry scene_films = {"film", film_entries};
 
 // The sensor being read: the first one's film and sampler become the scene's.
 struct sensor_parts {
@@ -96,7 +99,7 @@ static bool use_film(struct reader *r, const struct film_data *d, struct where a
 }
 
 static bool film_read(struct reader *r, const struct xml_node *node, bool use) {
-    const struct entry *e = object_entry(&films, node);
+    const struct entry *e = object_entry(&scene_films, node);
     struct film_data d = {0};
     struct object *filter = NULL;
     if (!e || !object_fill(r, node, e, &d, false, film_child, &filter))

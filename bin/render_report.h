@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// What relume render says when the picture is written.
+#pragma once
+
+#include "driver/job.h"
+
+struct render_outcome {
+    const char *output;
+    struct render_result render;
+    uint64_t rejected, overflows;
+    double noise; // negative: not measured
+};
+
+// What makes the picture worse than asked for.
+void render_report_warnings(const struct render_outcome *o);
+void render_report(const struct render_outcome *o);
+void render_report_json(const struct job *job, const struct render_outcome *o);
