@@ -247,7 +247,7 @@ static void report(const struct decoder_input *in, int status, bool late) {
                   "may take (the decoder died of signal %d)",
                   in->path, WTERMSIG(status));
     else
-        log_error("%s: cannot be read: the decoder ended early", in->path);
+        log_error("%s: cannot be read: it is damaged (the decoder ended early)", in->path);
 }
 
 static bool run_child(struct decoder_input *in, image_decoder decode, struct image *im) {
