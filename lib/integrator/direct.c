@@ -75,7 +75,7 @@ static void sample_material(const struct direct *d, struct trace_context *ctx, i
         }
         world_surface(ctx->world, &ray, &hit, &next);
         vertex_add_emission(ctx, lane, &next, wi, beta, &from);
-        const struct object *o = next.shape->bsdf;
+        const struct object *o = next.bsdf;
         if (!bsdf_type_of(o)->null_transmittance)
             return;
         beta *= bsdf_type_of(o)->null_transmittance(o->data, &next.point,
@@ -104,7 +104,7 @@ static void trace_one(const struct direct *d, struct trace_context *ctx, int lan
         if (!d->hide_emitters)
             vertex_add_emission(ctx, lane, &s, ray.d, beta, &from);
         const vec3 wo = to_local(&s.point.frame, -ray.d);
-        const struct object *o = s.shape->bsdf;
+        const struct object *o = s.bsdf;
         const struct bsdf_type *type = bsdf_type_of(o);
         const spectrum through = type->null_transmittance
                                      ? type->null_transmittance(o->data, &s.point, wo)

@@ -4,7 +4,7 @@
 static const struct closure *resolve(const struct response *self, const struct surface *s, vec3 wo,
                                      struct closure_stack *stack) {
     (void)self;
-    return bsdf_resolve(s->shape->bsdf, &s->point, wo, stack);
+    return bsdf_resolve(s->bsdf, &s->point, wo, stack);
 }
 
 const struct response response_physical = {resolve};

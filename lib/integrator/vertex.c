@@ -3,7 +3,7 @@
 
 void vertex_add_emission(struct trace_context *ctx, int lane, const struct surface *s, vec3 d,
                          spectrum beta, const struct path_origin *from) {
-    const uint32_t index = s->shape->light;
+    const uint32_t index = s->light;
     if (index == SCENE_NONE)
         return;
     const struct world_light *light = &ctx->world->lights[index];
@@ -77,7 +77,7 @@ void vertex_add_first(struct trace_context *ctx, int lane, const struct surface 
         .ng = s->ng,
         .z = s->t,
         .uv = s->point.at.uv,
-        .shape = s->shape_index + 1,
+        .shape = s->shape + 1,
         .instance = s->instance == SCENE_NONE ? 0 : s->instance + 1,
         .albedo = closure && closure->type->albedo ? closure->type->albedo(closure)
                                                    : spectrum_grey(0)};

@@ -9,7 +9,7 @@
 static const float GAMMA_3 = 3 * 0x1p-24f / (1 - 3 * 0x1p-24f);
 
 // dp/du and dp/dv of a triangle; zero where its texture coordinates are degenerate.
-static void triangle_derivatives(const struct mesh *m, const uint32_t i[3], vec3 e1, vec3 e2,
+static void triangle_derivatives(const struct world_shape *m, const uint32_t i[3], vec3 e1, vec3 e2,
                                  struct bsdf_point *point) {
     const float *t0 = m->uvs[i[0]], *t1 = m->uvs[i[1]], *t2 = m->uvs[i[2]];
     const float du1 = t1[0] - t0[0], dv1 = t1[1] - t0[1];
@@ -22,9 +22,8 @@ static void triangle_derivatives(const struct mesh *m, const uint32_t i[3], vec3
     point->dpdv = (du1 * e2 - du2 * e1) * inv;
 }
 
-static void triangle_surface(const struct shape *shape, const struct accel_hit *hit,
+static void triangle_surface(const struct world_shape *m, const struct accel_hit *hit,
                              bool tangents, struct surface *s) {
-    const struct mesh *m = &shape->mesh;
     const uint32_t *i = m->indices[hit->primitive];
     const vec3 p0 = v3_load_padded(m->positions[i[0]]), p1 = v3_load_padded(m->positions[i[1]]),
                p2 = v3_load_padded(m->positions[i[2]]);
@@ -41,7 +40,7 @@ static void triangle_surface(const struct shape *shape, const struct accel_hit *
             ns = s->ng;
     }
     s->point.dpdu = s->point.dpdv = (vec3){0};
-    s->point.at = (struct texture_point){{b1, b2}, m, hit->primitive, {b1, b2}};
+    s->point.at = (struct texture_point){{b1, b2}, m->mesh, hit->primitive, {b1, b2}};
     if (m->uvs) {
         const float *t0 = m->uvs[i[0]], *t1 = m->uvs[i[1]], *t2 = m->uvs[i[2]];
         s->point.at.uv = (struct vec2){b0 * t0[0] + b1 * t1[0] + b2 * t2[0],
@@ -93,17 +92,18 @@ static void apply_instance(const struct world_transform *x, struct surface *s) {
 
 void world_surface(const struct world *w, const struct ray *ray, const struct accel_hit *hit,
                    struct surface *s) {
-    const struct shape *shape = &w->scene->shapes[hit->shape];
+    const struct world_shape *shape = &w->shapes[hit->shape];
     s->t = hit->t;
-    s->shape = shape;
-    s->shape_index = hit->shape;
+    s->bsdf = shape->bsdf;
+    s->light = shape->light;
+    s->shape = hit->shape;
     s->primitive = hit->primitive;
     s->instance = hit->instance;
     s->point.wavelengths.count = 0;
     if (shape->kind == SHAPE_MESH)
         triangle_surface(shape, hit, w->tangents_matter, s);
     else
-        quadric_shading(shape->kind, &w->quadrics[hit->shape], ray, hit->t, s);
+        quadric_shading((enum shape_kind)shape->kind, &w->quadrics[hit->shape], ray, hit->t, s);
     if (hit->instance != SCENE_NONE)
         apply_instance(&w->instances[hit->instance], s);
     if (shape->flip_normals) {

@@ -5,6 +5,19 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
+static void init_shapes(struct world *w, const struct scene *s) {
+    w->shapes = mem_array(s->shape_count, sizeof *w->shapes);
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        const struct shape *from = &s->shapes[i];
+        const struct mesh *m = &from->mesh;
+        w->shapes[i] = (struct world_shape){
+            .indices = (const void *)m->indices, .positions = (const void *)m->positions,
+            .normals = (const void *)m->normals, .uvs = (const void *)m->uvs, .mesh = m,
+            .bsdf = from->bsdf, .light = from->light, .kind = (uint8_t)from->kind,
+            .flip_normals = from->flip_normals};
+    }
+}
+
 static bool prepare_textures(struct scene *s) {
     for (uint32_t i = 0; i < s->texture_count; i++) {
         const struct texture_type *type = texture_type_of(s->textures[i]);
@@ -107,6 +120,7 @@ struct world *world_create(struct scene *s, int threads) {
     w->radius = length(s->bounds_max - w->centre);
     if (!(w->radius > 0))
         w->radius = 1; // nothing, or a single point: any positive size will do
+    init_shapes(w, s);
     if (!init_transforms(w, s) || !prepare_textures(s) || !prepare_bsdfs(w, s) || !prepare_lights(w, s))
         goto fail;
     const double start = time_seconds();
@@ -131,6 +145,7 @@ void world_destroy(struct world *w) {
             light_type_of(s->lights[i].object)->finish(s->lights[i].object->data);
     accel_destroy(w->accel);
     alias_finish(&w->choice);
+    mem_free(w->shapes);
     mem_free(w->quadrics);
     mem_free(w->instances);
     mem_free(w->lights);
@@ -159,7 +174,7 @@ spectrum world_transmittance(const struct world *w, struct ray ray,
             return through;
         world_surface(w, &ray, &hit, &s);
         s.point.wavelengths = wavelengths;
-        const struct object *bsdf = s.shape->bsdf;
+        const struct object *bsdf = s.bsdf;
         const struct bsdf_type *type = bsdf_type_of(bsdf);
         if (!type->null_transmittance)
             return spectrum_grey(0);

@@ -22,8 +22,22 @@ struct world_transform {
     vec3 error; // rounding of positions that grows with the size of a quadric
 };
 
+// What surfaces need of a shape at every hit, in one cache line: hits jump about in memory.
+struct world_shape {
+    const uint32_t (*indices)[3];
+    const float (*positions)[3];
+    const float (*normals)[3];  // NULL: none
+    const float (*uvs)[2];      // NULL: none
+    const struct mesh *mesh;
+    const struct object *bsdf;
+    uint32_t light;             // or SCENE_NONE
+    uint8_t kind;               // enum shape_kind
+    bool flip_normals;
+};
+
 struct world {
     const struct scene *scene;
+    struct world_shape *shapes;        // by shape
     struct accel *accel;
     struct world_light *lights; // index: as in the scene
     uint32_t light_count;
@@ -59,8 +73,9 @@ struct surface {
     vec3 ng;                 // unit, on the outer side of the shape whatever the ray's side
     float t;
     struct bsdf_point point; // shading frame, texture coordinates
-    const struct shape *shape;
-    uint32_t shape_index, primitive, instance;
+    const struct object *bsdf;
+    uint32_t light;          // that shines from here, or SCENE_NONE
+    uint32_t shape, primitive, instance;
 };
 
 void world_surface(const struct world *w, const struct ray *ray, const struct accel_hit *hit,
