@@ -6,15 +6,33 @@
 
 #include "base/file.h"
 #include "base/json.h"
-#include "base/log.h"
+#include "driver/scene_info.h"
 #include "image/summary.h"
 #include "mesh/mesh.h"
 #include "subcommand.h"
 
 struct info_options {
     const char *file;
-    bool json;
+    struct option_list defines;
+    int threads;
+    bool lenient, json;
 };
+
+static int tell_scene(const struct info_options *o, struct json *out) {
+    struct arena arena = {0};
+    struct job job;
+    const struct scene_define *defines = defines_parse(&o->defines, &arena);
+    const struct job_options job_options = {
+        .scene = o->file, .threads = o->threads,
+        .reading = {.defines = defines, .define_count = o->defines.count, .lenient = o->lenient}};
+    const bool good = defines && job_open(&job, &job_options);
+    if (good) {
+        scene_info_add(&job, out);
+        job_close(&job);
+    }
+    arena_finish(&arena);
+    return good ? EXIT_DONE : defines ? EXIT_FAILED : EXIT_USAGE;
+}
 
 static void tell_channel(const struct image *im, int c, struct json *out) {
     struct channel_summary s;
@@ -99,27 +117,39 @@ static bool is_mesh(const char *extension) {
 static int run(const void *values, const char *command) {
     const struct info_options *o = values;
     char extension[16];
+    int code;
     (void)command;
     file_extension(o->file, extension, sizeof extension);
     struct json *out = json_new_object();
     json_add_text(out, "file", o->file);
-    const bool good = is_mesh(extension) ? tell_mesh(o->file, out) : tell_image(o->file, out);
-    if (good && o->json)
+    if (strcmp(extension, "xml") == 0)
+        code = tell_scene(o, out);
+    else if (is_mesh(extension))
+        code = tell_mesh(o->file, out) ? EXIT_DONE : EXIT_FAILED;
+    else
+        code = tell_image(o->file, out) ? EXIT_DONE : EXIT_FAILED;
+    if (code == EXIT_DONE && o->json)
         json_print(out, true);
-    else if (good)
+    else if (code == EXIT_DONE)
         json_print_lines(out);
     json_destroy(out);
-    return good ? EXIT_DONE : EXIT_FAILED;
+    return code;
 }
 
+#define AT(member) offsetof(struct info_options, member)
 static const struct option_spec options[] = {
+    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
+     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
+    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
+     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_THREADS(struct info_options, threads),
     OPTION_JSON(struct info_options, json),
     OPTION_END,
 };
 
 static const struct option_argument arguments[] = {
-    {.name = "FILE", .offset = offsetof(struct info_options, file),
-     .help = "a picture (EXR, PNG, HDR, JPEG, ...) or a mesh (OBJ, PLY, ...)"},
+    {.name = "FILE", .offset = AT(file),
+     .help = "a scene (.xml), a mesh (OBJ, PLY, ...) or a picture (EXR, PNG, HDR, JPEG, ...)"},
     {.name = NULL},
 };
 
@@ -128,6 +158,10 @@ const struct subcommand subcommand_info = {
               .size = sizeof(struct info_options)},
     .options = {.options = options,
                 .arguments = arguments,
-                .examples = "  relume info room.exr\n  relume info bunny.ply --json\n"},
+                .description = "Of a scene: what it holds, what rendering it requires and does "
+                               "not, and the memory it takes.\nOf a picture: size, layers, "
+                               "attributes, the range of each channel, NaN and infinities.",
+                .examples = "  relume info scene.xml -D spp=64\n"
+                            "  relume info room.exr\n  relume info bunny.ply --json\n"},
     .run = run,
 };
