@@ -57,20 +57,29 @@ static bool add_attributes(exr_context_t context, int part, const struct image *
     return true;
 }
 
+// By fields: whether the corners are structs or unions depends on the version of the library.
+static exr_attr_box2i_t make_box(int x, int y, int width, int height) {
+    exr_attr_box2i_t box;
+    box.min.x = x;
+    box.min.y = y;
+    box.max.x = x + width - 1;
+    box.max.y = y + height - 1;
+    return box;
+}
+
 static bool write_header(struct writer *w, bool half) {
     const struct image *im = w->im;
     const int x = im->full_width ? im->crop_x : 0, y = im->full_width ? im->crop_y : 0;
-    const exr_attr_box2i_t data = {{{.x = x, .y = y}},
-                                   {{.x = x + im->width - 1, .y = y + im->height - 1}}};
-    exr_attr_box2i_t display = data;
-    if (im->full_width)
-        display = (exr_attr_box2i_t){{{.x = 0, .y = 0}},
-                                     {{.x = im->full_width - 1, .y = im->full_height - 1}}};
+    const exr_attr_box2i_t data = make_box(x, y, im->width, im->height);
+    const exr_attr_box2i_t display =
+        im->full_width ? make_box(0, 0, im->full_width, im->full_height) : data;
+    exr_attr_v2f_t centre;
+    centre.x = centre.y = 0;
     int part = 0;
     return exr_set_longname_support(w->context, 1) == EXR_ERR_SUCCESS &&
            exr_add_part(w->context, NULL, EXR_STORAGE_SCANLINE, &part) == EXR_ERR_SUCCESS &&
            exr_initialize_required_attr(w->context, part, &display, &data, 1,
-                                        &(exr_attr_v2f_t){{{.x = 0, .y = 0}}}, 1,
+                                        &centre, 1,
                                         EXR_LINEORDER_INCREASING_Y,
                                         EXR_COMPRESSION_ZIP) == EXR_ERR_SUCCESS &&
            add_channels(w->context, part, im, half) && add_attributes(w->context, part, im) &&
