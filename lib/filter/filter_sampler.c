@@ -12,7 +12,7 @@
 
 #include "filter/filter.h"
 
-enum { CELLS = 1024, GUIDE = 256 };
+enum { CELLS = 1024, GUIDE = 2048 };
 
 struct cell {
     float cdf; // where it begins

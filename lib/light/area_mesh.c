@@ -82,6 +82,8 @@ static void init_kind(struct area_mesh *a) {
         a->kind = POLYGON_RECTANGLE;
     }
     a->n = emitting_normal(a, 0);
+    if (a->kind != POLYGON_MESH)
+        solid_angle_init(a);
 }
 
 bool area_mesh_init(struct area_mesh *a, const struct shape *shape) {

@@ -3,6 +3,7 @@
 // and spheres that a transform has made ellipsoids, by area.
 #include "light/area_shape.h"
 
+#include "math/elementary.h"
 #include "math/frame.h"
 #include "math/warp.h"
 #include "scene/quadric.h"
@@ -21,7 +22,9 @@ static vec3 object_point(enum shape_kind kind, struct vec2 u) {
         const struct vec2 d = warp_disk(u);
         return v3(d.x, d.y, 0);
     }
-    return v3(cosf(TWO_PI * u.x), sinf(TWO_PI * u.x), u.y);
+    float sine, cosine;
+    sincos_turn(u.x, &sine, &cosine);
+    return v3(cosine, sine, u.y);
 }
 
 static float object_area(enum shape_kind kind) {
@@ -136,8 +139,9 @@ static vec3 seen_point(vec3 axis, float sin2_max, struct vec2 u) {
     const float cos_alpha = sin2 / sqrtf(sin2_max) + (1 - t) * safe_sqrt(1 - sin2 / sin2_max);
     const float sin_alpha = safe_sqrt(1 - cos_alpha * cos_alpha);
     const struct frame f = frame_from_normal(axis);
-    const float phi = TWO_PI * u.y;
-    return to_world(&f, v3(sin_alpha * cosf(phi), sin_alpha * sinf(phi), minf(cos_alpha, 1)));
+    float sin_phi, cos_phi;
+    sincos_turn(u.y, &sin_phi, &cos_phi);
+    return to_world(&f, v3(sin_alpha * cos_phi, sin_alpha * sin_phi, minf(cos_alpha, 1)));
 }
 
 static void place_on_sphere(const struct area_quadric *q, vec3 outwards, struct light_sample *s,

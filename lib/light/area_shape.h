@@ -21,6 +21,9 @@ struct area_mesh {
     struct alias_table by_area; // kind POLYGON_MESH
     // POLYGON_TRIANGLE: corner and two edges; POLYGON_RECTANGLE: also orthogonal
     vec3 corner, edge_x, edge_y, n;
+    vec3 middle;
+    float least_height;  // above the plane, for sampling by solid angle
+    double axes[3][3], extent[2]; // POLYGON_RECTANGLE: unit edges and their normal, edge lengths
     uint32_t first[2]; // of the triangles that make the rectangle: index of the right-angled corner
 };
 

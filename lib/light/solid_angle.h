@@ -6,6 +6,9 @@
 
 #include "light/area_shape.h"
 
+// Fills what the functions below need, of a light whose kind, corner and edges are known.
+void solid_angle_init(struct area_mesh *a);
+
 // Whether the light is near enough for it; a function of p alone, so that sample and pdf agree.
 bool solid_angle_pays(const struct area_mesh *a, vec3 p);
 

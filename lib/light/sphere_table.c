@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "light/turn.h"
+#include "math/elementary.h"
 #include "math/hash.h"
 
 static const float GRID = 0x1p-24f; // step of uniform_float
@@ -28,14 +30,13 @@ static void grid_cdf(const double *weights, int count, float *cdf) {
     }
 }
 
+// The i with cdf[i] <= u < cdf[i + 1]. Steps by arithmetic: which way they go cannot be predicted.
 static int grid_search(const float *cdf, int count, float u) {
-    int lo = 0, hi = count; // cdf[lo] <= u < cdf[hi]
-    while (hi - lo > 1) {
-        const int middle = lo + (hi - lo) / 2;
-        if (cdf[middle] <= u)
-            lo = middle;
-        else
-            hi = middle;
+    int lo = 0;
+    for (int length = count; length > 1;) {
+        const int half = length / 2;
+        lo += half & -(cdf[lo + half] <= u);
+        length -= half;
     }
     return lo;
 }
@@ -134,9 +135,8 @@ struct place {
 
 static struct place place_of(const struct sphere_table *t, vec3 w) {
     const float sine = sqrtf(w[0] * w[0] + w[2] * w[2]);
-    const float turn = atan2f(w[0], -w[2]) * (1 / TWO_PI);
-    const float u = (turn < 0 ? turn + 1 : turn) * (float)t->width - 0.5f;
-    const float v = atan2f(sine, w[1]) * INV_PI * (float)(t->height - 1);
+    const float u = turn_of(w[0], -w[2]) * (float)t->width - 0.5f;
+    const float v = 2 * turn_of(sine, w[1]) * (float)(t->height - 1);
     const float wrapped = u < 0 ? u + (float)t->width : u;
     struct place p = {.x = (int)wrapped, .y = (int)v, .sine = maxf(sine, SMALLEST_SINE)};
     p.x = p.x < t->width ? p.x : t->width - 1;
@@ -207,11 +207,12 @@ bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, f
     const float uy = inside(t->rows, p.y, u.y, uniform_float((uint32_t)(bits >> 32)));
     p.fy = sample_linear(uy, c.w[0] + c.w[1], c.w[2] + c.w[3]);
     p.fx = sample_linear(ux, lerpf(p.fy, c.w[0], c.w[2]), lerpf(p.fy, c.w[1], c.w[3]));
-    const float theta = PI * ((float)p.y + p.fy) / (float)(t->height - 1);
-    const float phi = TWO_PI * ((float)p.x + p.fx + 0.5f) / (float)t->width;
-    const float sine = sinf(theta);
+    const float around = ((float)p.x + p.fx + 0.5f) / (float)t->width;
+    float sin_phi, cos_phi, sine, cosine;
+    sincos_turn(around - 1, &sin_phi, &cos_phi);
+    sincos_turn(0.5f * ((float)p.y + p.fy) / (float)(t->height - 1), &sine, &cosine);
     p.sine = maxf(sine, SMALLEST_SINE);
-    *w = v3(sinf(phi) * sine, cosf(theta), -cosf(phi) * sine);
+    *w = v3(sin_phi * sine, cosine, -cos_phi * sine);
     *pdf_sa = density(t, &p, &c);
     *value = interpolate(t, &p);
     return *pdf_sa > 0 && *pdf_sa < INFINITY;

@@ -6,7 +6,9 @@
 #include "light/light.h"
 #include "light/sun_position.h"
 #include "light/sunsky_model.h"
+#include "light/turn.h"
 #include "math/distribution.h"
+#include "math/elementary.h"
 #include "math/frame.h"
 
 enum { ROWS = 48, COLUMNS = 128 }; // in the cosine from the zenith, and around it
@@ -93,7 +95,7 @@ static spectrum radiance(const struct sunsky *s, vec3 w) {
         return spectrum_grey(0);
     const float height = height_from_sun(s, w);
     const float gamma = 2 * asinf(minf(sqrtf(0.5f * height), 1));
-    spectrum sum = s->sky_factor * sky_model_eval(&s->sky, w[2], gamma);
+    spectrum sum = s->sky_factor * sky_model_eval(&s->sky, w[2], 1 - height, gamma);
     if (height <= s->cone_height)
         sum += sun_radiance(s, w, gamma);
     return sum;
@@ -102,8 +104,10 @@ static spectrum radiance(const struct sunsky *s, vec3 w) {
 // ---- preparation
 
 static vec3 cell_direction(float row, float column) {
-    const float z = row / ROWS, r = safe_sqrt(1 - z * z), phi = TWO_PI * column / COLUMNS;
-    return v3(r * cosf(phi), r * sinf(phi), z);
+    const float z = row / ROWS, r = safe_sqrt(1 - z * z);
+    float sine, cosine;
+    sincos_turn(column / COLUMNS, &sine, &cosine);
+    return v3(r * cosine, r * sine, z);
 }
 
 // The sky alone. Every cell keeps some weight, so that none is out of reach. Returns the integral
@@ -117,8 +121,10 @@ static double init_table(struct sunsky *s) {
             for (int i = 0; i < 4; i++) {
                 const vec3 w = cell_direction((float)y + 0.25f + 0.5f * (float)(i / 2),
                                               (float)x + 0.25f + 0.5f * (float)(i % 2));
-                const float gamma = 2 * asinf(minf(0.5f * length(w - s->sun.n), 1));
-                weights[y][x] += 0.25f * spectrum_luminance(sky_model_eval(&s->sky, w[2], gamma));
+                const float height = height_from_sun(s, w);
+                const float gamma = 2 * asinf(minf(sqrtf(0.5f * height), 1));
+                weights[y][x] += 0.25f * spectrum_luminance(
+                                             sky_model_eval(&s->sky, w[2], 1 - height, gamma));
             }
             total += (double)weights[y][x];
         }
@@ -134,8 +140,10 @@ static double init_table(struct sunsky *s) {
 
 static vec3 cone_direction(const struct sunsky *s, struct vec2 u) {
     const float height = u.x * s->cone_height;
-    const float r = safe_sqrt(height * (2 - height)), phi = TWO_PI * u.y;
-    return to_world(&s->sun, v3(r * cosf(phi), r * sinf(phi), 1 - height));
+    const float r = safe_sqrt(height * (2 - height));
+    float sine, cosine;
+    sincos_turn(u.y, &sine, &cosine);
+    return to_world(&s->sun, v3(r * cosine, r * sine, 1 - height));
 }
 
 static double sun_integral(const struct sunsky *s) {
@@ -207,29 +215,29 @@ static bool prepare(struct object *self, const struct light_scene *scene, struct
 
 // ---- sampling
 
-static float sky_pdf(const struct sunsky *s, vec3 w) {
-    int row = (int)(w[2] * ROWS);
-    const float turn = atan2f(w[1], w[0]) * (1 / TWO_PI);
-    int column = (int)((turn < 0 ? turn + 1 : turn) * COLUMNS);
-    row = row < ROWS ? row : ROWS - 1;
-    column = column < COLUMNS ? column : COLUMNS - 1;
+static float cell_pdf(const struct sunsky *s, int row, int column) {
     return distribution_pmf(&s->rows, (uint32_t)row) *
            distribution_pmf(&s->columns[row], (uint32_t)column) * (ROWS * COLUMNS / TWO_PI);
 }
 
-static float mixture_pdf(const struct sunsky *s, vec3 w) {
-    if (s->dark || !(w[2] >= 0))
-        return 0;
-    float pdf = s->sky_share > 0 ? s->sky_share * sky_pdf(s, w) : 0;
-    if (height_from_sun(s, w) <= s->cone_height)
-        pdf += (1 - s->sky_share) / (TWO_PI * s->cone_height);
-    return pdf;
+static float sky_pdf(const struct sunsky *s, vec3 w) {
+    const int row = (int)(w[2] * ROWS), column = (int)(turn_of(w[1], w[0]) * COLUMNS);
+    return cell_pdf(s, row < ROWS ? row : ROWS - 1, column < COLUMNS ? column : COLUMNS - 1);
 }
 
-static vec3 sample_sky(const struct sunsky *s, struct vec2 u) {
+// w above the horizon; sky: the sky's density there
+static float mixture_pdf(const struct sunsky *s, vec3 w, float sky) {
+    const float pdf = s->sky_share * sky;
+    if (height_from_sun(s, w) > s->cone_height)
+        return pdf;
+    return pdf + (1 - s->sky_share) / (TWO_PI * s->cone_height);
+}
+
+static vec3 sample_sky(const struct sunsky *s, struct vec2 u, float *pdf) {
     float pmf, y, x;
     const uint32_t row = distribution_sample(&s->rows, u.y, &pmf, &y);
     const uint32_t column = distribution_sample(&s->columns[row], u.x, &pmf, &x);
+    *pdf = cell_pdf(s, (int)row, (int)column);
     return cell_direction((float)row + y, (float)column + x);
 }
 
@@ -240,10 +248,16 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
         return false;
     const bool sky = u.x < s->sky_share;
     u.x = minf(sky ? u.x / s->sky_share : (u.x - s->sky_share) / (1 - s->sky_share),
-                0x1.fffffep-1f);
-    const vec3 w = normalize(sky ? sample_sky(s, u) : cone_direction(s, u));
+               0x1.fffffep-1f);
+    float sky_density = 0;
+    const vec3 w = normalize(sky ? sample_sky(s, u, &sky_density) : cone_direction(s, u));
+    if (!(w[2] >= 0))
+        return false;
+    if (!sky && s->sky_share > 0)
+        sky_density = sky_pdf(s, w);
     *out = (struct light_sample){.wi = affine_vector(&s->world, w), .distance = INFINITY,
-                                 .pdf_sa = mixture_pdf(s, w), .emission = radiance(s, w)};
+                                 .pdf_sa = mixture_pdf(s, w, sky_density),
+                                 .emission = radiance(s, w)};
     return out->pdf_sa > 0;
 }
 
@@ -255,7 +269,10 @@ static spectrum emission(const void *data, const struct light_hit *hit) {
 static float pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
     const struct sunsky *s = data;
     (void)p;
-    return mixture_pdf(s, affine_vector(&s->local, hit->wi));
+    const vec3 w = affine_vector(&s->local, hit->wi);
+    if (s->dark || !(w[2] >= 0))
+        return 0;
+    return mixture_pdf(s, w, s->sky_share > 0 ? sky_pdf(s, w) : 0);
 }
 
 static float power(const void *data) {

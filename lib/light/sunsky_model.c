@@ -25,6 +25,8 @@
 
 #include <float.h>
 
+#include "math/elementary.h"
+
 #include "light/sunsky_data.inc"
 
 enum { ALBEDOS = 2, CONTROLS = 6, PARAMS = 9, WAVELENGTHS = 11, SEGMENTS = 45, ELEVATIONS = 136 };
@@ -95,13 +97,13 @@ static float power_three_halves(float x) {
     return x * sqrtf(x);
 }
 
-spectrum sky_model_eval(const struct sky_model *m, float cos_theta, float gamma) {
-    const float c = cosf(gamma), c2 = c * c;
+spectrum sky_model_eval(const struct sky_model *m, float cos_theta, float cos_gamma, float gamma) {
+    const float c = cos_gamma, c2 = c * c;
     const spectrum one = spectrum_grey(1), *p = m->p;
-    const spectrum horizon = one + p[0] * spectrum_map(expf, p[1] / (cos_theta + 0.01f));
+    const spectrum horizon = one + p[0] * spectrum_map(fast_exp, p[1] / (cos_theta + 0.01f));
     const spectrum chi = spectrum_divide(
         spectrum_grey(1 + c2), spectrum_map(power_three_halves, one + p[8] * p[8] - 2 * c * p[8]));
-    const spectrum glow = p[2] + p[3] * spectrum_map(expf, p[4] * gamma) + p[5] * c2 + p[6] * chi +
+    const spectrum glow = p[2] + p[3] * spectrum_map(fast_exp, p[4] * gamma) + p[5] * c2 + p[6] * chi +
                           p[7] * safe_sqrt(cos_theta);
     return spectrum_clamp(horizon * glow * m->radiance, 0, FLT_MAX);
 }

@@ -17,7 +17,7 @@ struct sky_model {
 // turbidity 1 to 10; sun's elevation 0 to pi/2
 void sky_model_init(struct sky_model *m, double turbidity, spectrum albedo, double elevation);
 // Towards cos_theta from the zenith, gamma from the sun.
-spectrum sky_model_eval(const struct sky_model *m, float cos_theta, float gamma);
+spectrum sky_model_eval(const struct sky_model *m, float cos_theta, float cos_gamma, float gamma);
 
 enum { SUN_KNOTS = 65 };
 
