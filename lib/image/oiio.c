@@ -27,7 +27,7 @@ static void *open_module(void) {
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/%s/librelume_oiio.so", directory, places[i]);
         if (file_exists(path))
-            return dlopen(path, RTLD_NOW | RTLD_LOCAL);
+            return dlopen(path, RTLD_LAZY | RTLD_LOCAL);
     }
     snprintf(module.error, sizeof module.error,
              "librelume_oiio.so is neither in %.200s/../lib nor in ../lib/relume", directory);

@@ -3,9 +3,10 @@
 # relume compare: numbers, limits, maps, refusals.
 #
 # usage: compare.sh RELUME
+# shellcheck disable=SC2154 # out and err: expect sets them
 set -u
 relume=$1
-# shellcheck source=tests/tool/pictures.sh
+# shellcheck source=/dev/null
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 
 one=$folder/one.pfm two=$folder/two.pfm large=$folder/large.pfm
