@@ -221,8 +221,16 @@ static struct xml_node *find_inner(struct xml_node *node) {
     return NULL;
 }
 
+// moment measures another integrator; aov may, but by itself it is the quick way to the layers.
+static bool needs_inner(const struct entry *e) {
+    for (const struct param *p = e ? e->params : NULL; p && p->name; p++)
+        if (p->type == PARAM_INTEGRATOR && !p->optional)
+            return true;
+    return false;
+}
+
 // Puts the integrator that the user asks for into the place of the file's: inside the file's
-// wrapper, or around its integrator when it is a wrapper itself. NULL after an error message.
+// wrapper, or around its integrator when it needs one inside. NULL after an error message.
 static struct xml_node *replace_integrator(struct reader *r, struct xml_node *node) {
     const char *wanted = r->options->integrator;
     const struct registry *integrators = r->options->registries.integrators;
@@ -235,10 +243,14 @@ static struct xml_node *replace_integrator(struct reader *r, struct xml_node *no
         return NULL;
     }
     const struct entry *present = registry_find(integrators, xml_get(node, "type"));
-    if (is_wrapper(e) && !is_wrapper(present)) {
+    if (needs_inner(e) && !is_wrapper(present)) {
         struct xml_node *outer = xml_new("integrator", node->at, r->arena);
+        // A copy goes inside: the original stays the scene's child, followed by its siblings.
+        struct xml_node *inner = arena_alloc(r->arena, sizeof *inner);
+        *inner = *node;
+        inner->next = NULL;
         xml_set(outer, "type", wanted, r->arena);
-        xml_append(outer, node);
+        xml_append(outer, inner);
         return outer;
     }
     struct xml_node *place = node;
