@@ -3,10 +3,9 @@
 # relume compare: numbers, limits, maps, refusals.
 #
 # usage: compare.sh RELUME
-# shellcheck disable=SC2154 # out and err: expect sets them
 set -u
 relume=$1
-# shellcheck source=/dev/null
+# shellcheck source=tests/tool/pictures.sh
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 
 one=$folder/one.pfm two=$folder/two.pfm large=$folder/large.pfm

@@ -3,10 +3,9 @@
 # relume tonemap and info: known values of known pictures, and wrong usage.
 #
 # usage: tonemap.sh RELUME
-# shellcheck disable=SC2154 # out and err: expect sets them
 set -u
 relume=$1
-# shellcheck source=/dev/null
+# shellcheck source=tests/tool/pictures.sh
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 
 half=$folder/half.pfm png=$folder/out.png
