@@ -4,7 +4,8 @@
 
 One untimed render comes first, so loading, kernel compilation and allocation are left out. Then
 every repeat renders with its own seed. A path is one sample of one pixel. Seconds are wall clock;
-CPU seconds are user plus system time of all threads, and hold still when others use the machine.
+CPU seconds are user plus system time of all threads. Other work on the machine stretches the first
+a lot and the second by up to a third (shared caches, clock), so compare runs that alternate.
 """
 import argparse
 import json
@@ -101,6 +102,7 @@ def main():
         "mpaths_per_second": paths / statistics.median(wall) / 1e6,
         "mpaths_per_second_best": paths / min(wall) / 1e6,
         "mpaths_per_cpu_second": paths / statistics.median(cpu) / 1e6,
+        "mpaths_per_cpu_second_best": paths / min(cpu) / 1e6,
         "mean": [float(x) for x in np.mean(total / args.repeats, axis=(0, 1))],
         "peak_memory_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
     }
