@@ -32,6 +32,7 @@ void render_report_json(const struct job *job, const struct render_outcome *o) {
     struct json *j = json_new_object();
     json_add_text(j, "output", o->output);
     json_add_count(j, "samples", (int64_t)t->samples);
+    json_add_bool(j, "stopped", t->stopped);
     json_add_number(j, "seconds", t->seconds);
     json_add_number(j, "load_seconds", job->load_seconds);
     json_add_number(j, "accel_seconds", job->world->accel_seconds);
@@ -43,6 +44,7 @@ void render_report_json(const struct job *job, const struct render_outcome *o) {
     json_add_count(j, "shadow_rays", (int64_t)t->shadow_rays);
     json_add_count(j, "truncated_paths", (int64_t)t->truncated);
     json_add_count(j, "rejected_samples", (int64_t)o->rejected);
+    json_add_count(j, "half_overflows", (int64_t)o->overflows);
     if (o->noise >= 0)
         json_add_number(j, "noise", o->noise);
     json_print(j, false);

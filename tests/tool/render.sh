@@ -1,0 +1,157 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# relume render: options, refusals, attributes, stopping.
+#
+# usage: render.sh RELUME
+set -u
+relume=$1
+# shellcheck source=tests/tool/pictures.sh
+. "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
+
+scene=$folder/sky.xml picture=$folder/sky.exr
+# make_scene NAME BODY
+make_scene() {
+    cat >"$folder/$1" <<END
+<scene version="3.0.0">
+<default name="radiance" value="1"/>
+<integrator type="path"/>
+<emitter type="constant" id="sky"><rgb name="radiance" value="\$radiance"/></emitter>
+<sensor type="perspective"><film type="hdrfilm"><integer name="width" value="16"/>
+<integer name="height" value="12"/><rfilter type="box"/></film></sensor>
+$2
+</scene>
+END
+}
+make_scene sky.xml ''
+
+# attribute JSON NAME: the text of an attribute, as `info --json` gives it
+attribute() {
+    python3 -c 'import json, sys; print(json.loads(sys.argv[1])["attributes"][sys.argv[2]])' "$@"
+}
+
+# channels JSON: names, sorted
+channels() {
+    python3 -c 'import json, sys; print(*sorted(c["name"] for c in json.loads(sys.argv[1])["channels"]))' "$1"
+}
+
+# Wrong usage: 2; a file that is not there: 1. Both name what was found.
+expect 2 "$relume" render "$scene" -o "$picture" --spq 4
+contains "$err" "--spq"
+expect 2 "$relume" render "$scene" -o "$picture" --colour
+contains "$err" "--colour"
+expect 2 "$relume" render "$scene"
+contains "$err" "--output"
+expect 2 "$relume" render "$scene" -o "$picture" --spp many
+contains "$err" "many"
+expect 2 "$relume" render "$scene" -o "$picture" -D radiance
+contains "$err" "NAME=VALUE"
+expect 1 "$relume" render "$folder/none.xml" -o "$picture"
+contains "$err" "$folder/none.xml"
+expect 1 "$relume" render "$scene" -o "$picture" --crop 0,0,17,12
+contains "$err" "0,0,17,12"
+expect 2 "$relume" render "$scene" -o "$picture" --sampler sobl
+contains "$err" "sobol"
+expect 2 "$relume" render "$scene" -o "$picture" --aov albdo
+contains "$err" "albedo"
+[ ! -e "$picture" ] || fail "a refused render wrote a file"
+
+# What cannot be written is known before the first sample, not after an hour.
+expect 1 timeout 20 "$relume" render "$scene" -o "$folder/none/sky.exr" --spp 1000000000
+contains "$err" "$folder/none"
+expect 1 timeout 20 "$relume" render "$scene" -o "$folder" --spp 1000000000
+contains "$err" "$folder"
+
+# A good run: the figures are JSON, the file says what made it.
+expect 0 "$relume" render "$scene" -o "$picture" --spp 4 --seed 7 -D radiance=0.5 --json
+near "$out" samples 4
+near "$out" paths $((16 * 12 * 4))
+near "$out" truncated_paths 0
+contains "$out" '"stopped": false'
+near "$out" rejected_samples 0
+near "$out" half_overflows 0
+expect 0 "$relume" info "$picture" --json
+info=$out
+near "$info" width 16
+near "$info" height 12
+near "$info" channels.1.min 0.5
+near "$info" channels.1.max 0.5
+[ "$(attribute "$info" relume.samples)" = 4.0 ] || fail "relume.samples"
+[ "$(attribute "$info" relume.seed)" = 7.0 ] || fail "relume.seed"
+[ "$(attribute "$info" relume.colourSpace)" = "linear Rec.709" ] || fail "relume.colourSpace"
+contains "$(attribute "$info" relume.command)" "render $scene -o $picture --spp 4"
+attribute "$info" relume.version >/dev/null || fail "relume.version"
+attribute "$info" relume.seconds >/dev/null || fail "relume.seconds"
+hash=$(attribute "$info" relume.sceneHash)
+[ ${#hash} = 16 ] || fail "relume.sceneHash is '$hash'"
+expect 0 "$relume" render "$scene" -o "$picture" --spp 4 --quiet
+[ -z "$out$err" ] || fail "--quiet printed: $out$err"
+
+# The hash follows the scene's files.
+make_scene other.xml '<!-- another scene -->'
+expect 0 "$relume" render "$folder/other.xml" -o "$folder/other.exr" --spp 1
+expect 0 "$relume" info "$folder/other.exr" --json
+[ "$(attribute "$out" relume.sceneHash)" != "$hash" ] || fail "two scenes have the same hash"
+
+# Size, crop, layers.
+expect 0 "$relume" render "$scene" -o "$picture" --spp 16 --size 10x8 --crop 2,3,9,8 \
+    --aov N,Z --variance --light-groups --paths --threads 3
+expect 0 "$relume" info "$picture" --json
+near "$out" width 7
+near "$out" height 5
+names=" $(channels "$out") "
+for channel in R G B N.X N.Y N.Z Z variance.R variance.G variance.B sky.R rest.B emission.G \
+    direct_diffuse.R indirect_specular.B; do
+    [[ $names == *" $channel "* ]] || fail "no channel $channel in:$names"
+done
+
+# Beyond the range of half: counted, said, and the picture is still written.
+expect 0 "$relume" render "$scene" -o "$picture" --spp 1 --half -D radiance=1e6 --json
+near "$out" half_overflows $((16 * 12 * 3))
+contains "$err" "$((16 * 12 * 3)) values were beyond the range of half"
+
+# Mistakes in a scene name file, line and the nearest name; --lenient takes unknown parameters.
+make_scene bad.xml '<shape type="sphere"><float name="radios" value="1"/></shape>'
+expect 1 "$relume" render "$folder/bad.xml" -o "$picture"
+contains "$err" "bad.xml:7"
+contains "$err" "radius"
+expect 0 "$relume" render "$folder/bad.xml" -o "$picture" --lenient --spp 1
+contains "$err" "radios"
+
+# stopped SIGNAL COMMAND...: sends the signal after a second; 0 is the time the command then took.
+stopped() {
+    local signal=$1 pid
+    shift
+    "$@" >"$folder/out" 2>"$folder/err" &
+    pid=$!
+    sleep 1
+    local start=$EPOCHREALTIME
+    kill "-$signal" $pid
+    { wait $pid; } 2>/dev/null
+    code=$?
+    seconds=$(python3 -c "print($EPOCHREALTIME - $start)")
+    out=$(cat "$folder/out") err=$(cat "$folder/err")
+}
+
+# Ctrl-C: within two seconds there is a picture in which all pixels have equally many samples; else
+# they were not all exactly 1. The pixels are many, so that a pass takes longer than a stop may.
+for signal in INT TERM; do
+    rm -f "$picture"
+    stopped $signal "$relume" render "$scene" -o "$picture" --spp 1000000000 --size 1024x768 --json
+    echo "SIG$signal: stopped after $seconds s"
+    [ "$code" = 3 ] || fail "exit code $code after SIG$signal, expected 3: $err"
+    python3 -c "import sys; sys.exit($seconds > 2)" || fail "it took $seconds s to stop"
+    contains "$out" '"stopped": true'
+    expect 0 "$relume" info "$picture" --json
+    near "$out" channels.0.min 1
+    near "$out" channels.0.max 1
+    near "$out" channels.0.mean 1
+    python3 -c "import sys; sys.exit(not 0 < $(attribute "$out" relume.samples) < 1e9)" ||
+        fail "relume.samples is $(attribute "$out" relume.samples)"
+done
+
+# A run that is killed leaves the old file.
+cp "$picture" "$folder/old.exr"
+stopped KILL "$relume" render "$scene" -o "$picture" --spp 1000000000
+cmp -s "$picture" "$folder/old.exr" || fail "a killed run changed the old file"
+
+finish
