@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles and rectangles sampled uniformly by the solid angle they subtend.
 //
-// In double: the formulas are differences of angles, and lights may be small, slanted or near.
+// In double: the formulas are differences of angles, and lights may be small, slanted or near. A
+// rectangle's sample takes about four times as long as one by area.
 #pragma once
 
 #include "light/area_shape.h"
