@@ -40,8 +40,9 @@ static int run(const void *values, const char *command) {
 #define AT(member) offsetof(struct compare_options, member)
 static const struct option_spec options[] = {
     {.name = "ztest", .type = OPTION_TEXT, .offset = AT(request.variance), .argument = "VAR.exr",
-     .help = "variance of REF's single-sample estimates: also test whether the pictures agree\n"
-             "within their noise, by pixels, 8x8 blocks and means; exit 1 if not"},
+     .help = "variance of REF's single-sample estimates: also test whether the\n"
+             "pictures agree within their noise, by pixels, 8x8 blocks and means;\n"
+             "exit 1 if not"},
     {.name = "samples", .type = OPTION_NUMBER, .offset = AT(request.samples), .argument = "N",
      .help = "TEST's samples per pixel, for --ztest; 0: what the file says", .def = "0", .min = 0,
      .max = 1e15},
@@ -51,11 +52,12 @@ static const struct option_spec options[] = {
     {.name = "map", .type = OPTION_TEXT, .offset = AT(request.map_path), .argument = "OUT.png",
      .help = "write a picture of the difference"},
     {.name = "map-kind", .type = OPTION_CHOICE, .offset = AT(map), .argument = "KIND",
-     .help = "HDR-FLIP in magma, or (test-ref)/ref with red above and blue below", .def = "flip",
+     .help = "HDR-FLIP in magma, or (test-ref)/ref with red above and blue\n"
+             "below", .def = "flip",
      .choices = comparison_map_names},
     {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",
-     .help = "exit 1 if METRIC is above X: mean (|ratio - 1|), mse, relmse, flip, ldr-flip,\n"
-             "ssim (1 - SSIM), psnr (-PSNR)"},
+     .help = "exit 1 if METRIC is above X: mean (|ratio - 1|), mse, relmse, flip,\n"
+             "ldr-flip, ssim (1 - SSIM), psnr (-PSNR)"},
     {.name = "eps", .type = OPTION_NUMBER, .offset = AT(request.eps), .argument = "E",
      .help = "relMSE divides by ref^2 + E; -1: 1e-3 of the squared mean of REF", .def = "-1",
      .min = -1, .max = 1e30},

@@ -39,7 +39,8 @@ static const struct option_spec options[] = {
      .help = "sampler in place of the scene's"},
     {.name = "max-depth", .type = OPTION_INT, .offset = AT(max_depth), .argument = "N", .min = -1,
      .max = 1000000, .def = "0",
-     .help = "most edges of a path: 1 emitters, 2 direct light; -1: no limit, 0: as the scene says"},
+     .help = "most edges of a path: 1 emitters, 2 direct light; -1: no limit,\n"
+             "0: as the scene says"},
     {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
      .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
     {.name = "aov", .type = OPTION_TEXT, .offset = AT(aovs), .argument = "LIST",
@@ -156,7 +157,7 @@ const struct subcommand subcommand_render = {
               .size = sizeof(struct values)},
     .options = {.options = options, .arguments = arguments,
                 .description = "Path traces SCENE. Stops at --spp samples per pixel, or on Ctrl-C "
-                               "with what is complete (exit code 3).",
+                               "with what is\ncomplete (exit code 3).",
                 .examples = "  relume render scene.xml -o out.exr --spp 256\n"
                             "  relume render scene.xml -o out.exr --size 640x360 --aov albedo,N,Z "
                             "--variance\n"

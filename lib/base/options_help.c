@@ -17,7 +17,7 @@ static void print_entry(const char *term, const char *help, const char *def) {
         else
             putchar(*c);
     }
-    if (def)
+    if (def && *def)
         printf(" [%s]", def);
     putchar('\n');
 }

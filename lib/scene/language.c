@@ -70,8 +70,8 @@ static void print_ignored(const struct entry *e) {
             printf("  %s\n", p->name);
 }
 
-// What stands in an example where the table has no default.
-static const char *placeholder(const struct param *p) {
+// What stands in an example where the table has no default; out has room for a number.
+static const char *placeholder(const struct param *p, char out[32]) {
     switch (p->type) {
     case PARAM_FILE: return "FILE";
     case PARAM_STRING: return "TEXT";
@@ -79,13 +79,14 @@ static const char *placeholder(const struct param *p) {
     case PARAM_INTEGRATOR: return "path";
     case PARAM_POINT:
     case PARAM_VECTOR: return "0 0 1";
-    default: return "1";
+    default: snprintf(out, 32, "%g", p->min > 1 ? p->min : 1); return out;
     }
 }
 
 static void print_example_param(const struct param *p) {
+    char number[32];
     const bool needs_texture = !p->def && param_is_texture(p->type);
-    const char *value = needs_texture ? "checkerboard" : p->def ? p->def : placeholder(p);
+    const char *value = needs_texture ? "checkerboard" : p->def ? p->def : placeholder(p, number);
     const char *tag = needs_texture                      ? "texture"
                       : p->type == PARAM_TEXTURE_SCALAR ? "float"
                                                         : param_tag(p, value);

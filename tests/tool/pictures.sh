@@ -33,7 +33,7 @@ expect() {
 
 # contains TEXT WORDS
 contains() {
-    [[ $1 == *"$2"* ]] || fail "no '$2' in: $1"
+    [[ $1 == *"$2"* ]] || fail "no '$2' in: ${1:0:2000}"
 }
 
 # near JSON KEYS VALUE: the number under dotted KEYS is within 1e-5 of VALUE.
