@@ -63,7 +63,7 @@ static inline struct pair cubature_panels(pair_fn f, void *ctx, double x0, doubl
             const double x = x0 + i * dx, y = y0 + j * dy;
             const struct pair whole = cubature_rule(f, ctx, x, x + dx, y, y + dy);
             const struct pair p =
-                cubature_split(f, ctx, x, x + dx, y, y + dy, whole, tolerance / panels, 7);
+                cubature_split(f, ctx, x, x + dx, y, y + dy, whole, tolerance / panels, 9);
             total.a += p.a;
             total.b += p.b;
         }

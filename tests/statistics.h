@@ -52,6 +52,7 @@ struct chi2_bins {
     double statistic;
     double pooled_expected, pooled_observed; // bins too small to stand alone
     int degrees;
+    double slack; // error of the pooled bins' expected count; at least 1 is allowed for
 };
 
 enum { CHI2_LEAST = 10 }; // expected count of a bin that stands alone
@@ -72,8 +73,8 @@ static inline double chi2_finish(struct chi2_bins *b) {
         const double d = b->pooled_observed - b->pooled_expected;
         b->statistic += d * d / b->pooled_expected;
         b->degrees++;
-    } else if (b->pooled_observed > 0) { // few are expected: Poisson tail, with one more for errors of the expected
-        const double p = 1 - gamma_q(b->pooled_observed, b->pooled_expected + 1);
+    } else if (b->pooled_observed > 0) { // few are expected: Poisson tail, as its own test
+        const double p = 1 - gamma_q(b->pooled_observed, b->pooled_expected + fmax(b->slack, 1));
         if (p < 1e-9)
             return p;
     }
