@@ -312,7 +312,7 @@ static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, in
 }
 
 void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET], uint32_t active,
-                       struct accel_hit hits[ACCEL_PACKET]) {
+                       bool coherent, struct accel_hit hits[ACCEL_PACKET]) {
     _Alignas(64) int valid[ACCEL_PACKET];
     struct RTCRayHit16 rh;
     packet_from(rays, active, valid, &rh.ray);
@@ -321,12 +321,13 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
 #if EMBREE_4
     struct RTCIntersectArguments args;
     rtcInitIntersectArguments(&args);
-    args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcIntersect16(valid, a->world, &rh, &args);
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, a->world, &context, &rh);
 #endif
     for (int i = 0; i < ACCEL_PACKET; i++) {
@@ -340,19 +341,20 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
 }
 
 uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
-                          uint32_t active) {
+                          uint32_t active, bool coherent) {
     _Alignas(64) int valid[ACCEL_PACKET];
     struct RTCRay16 p;
     packet_from(rays, active, valid, &p);
 #if EMBREE_4
     struct RTCOccludedArguments args;
     rtcInitOccludedArguments(&args);
-    args.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcOccluded16(valid, a->world, &p, &args);
 #else
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcOccluded16(valid, a->world, &context, &p);
 #endif
     uint32_t blocked = 0;

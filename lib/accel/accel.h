@@ -34,9 +34,10 @@ void accel_thread_init(void);
 
 bool accel_intersect(const struct accel *a, const struct ray *ray, struct accel_hit *hit);
 bool accel_occluded(const struct accel *a, const struct ray *ray);
-// Rays outside `active` (bit i: ray i) are not traced; their hits are left alone.
+// Rays outside `active` (bit i: ray i) are not traced; their hits are left alone. coherent: the rays
+// run much the same way.
 void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET], uint32_t active,
-                       struct accel_hit hits[ACCEL_PACKET]);
+                       bool coherent, struct accel_hit hits[ACCEL_PACKET]);
 // Bit i of the result: ray i is blocked.
 uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
-                          uint32_t active);
+                          uint32_t active, bool coherent);

@@ -60,7 +60,7 @@ static void trace_first_hits(struct trace_context *ctx, const struct path_start 
     struct accel_hit hits[SINK_LANES];
     for (int i = 0; i < SINK_LANES; i++)
         rays[i] = starts[i].ray;
-    accel_intersect16(ctx->world->accel, rays, 0xffff, hits);
+    accel_intersect16(ctx->world->accel, rays, 0xffff, true, hits);
     ctx->rays += SINK_LANES;
     ctx->paths += SINK_LANES;
     for (int i = 0; i < SINK_LANES; i++) {

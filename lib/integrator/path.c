@@ -36,6 +36,8 @@ enum {
     DRAW_ROULETTE = 6,
 };
 
+enum { LEAST_IN_PACKET = 4 }; // rays: fewer are faster one by one
+
 struct lane {
     struct ray ray;
     spectrum beta;
@@ -185,24 +187,27 @@ static bool run_together(const struct lane lanes[SINK_LANES], uint32_t pending) 
 }
 
 static void finish_as_packet(struct trace_context *ctx, struct lane lanes[SINK_LANES],
-                             uint32_t pending) {
+                             uint32_t pending, bool together) {
     struct ray rays[ACCEL_PACKET];
     for (int i = 0; i < SINK_LANES; i++)
         rays[i] = lanes[i].shadow.ray;
-    const uint32_t blocked = accel_occluded16(ctx->world->accel, rays, pending);
+    const uint32_t blocked = accel_occluded16(ctx->world->accel, rays, pending, together);
     ctx->shadow_rays += (uint64_t)__builtin_popcount(pending);
     for (int i = 0; i < SINK_LANES; i++)
         if (pending >> i & 1 && !(blocked >> i & 1))
             sink_add(ctx->sink, i, &lanes[i].shadow.contribution);
 }
 
-// The shadow rays of one vertex of all lanes; those of the first vertices may go as a packet.
+// The shadow rays of one vertex of all lanes. Packets depend on the lanes alone, never on a clock.
 static void finish_shadows(struct trace_context *ctx, struct lane lanes[SINK_LANES], bool first) {
+    const struct world *w = ctx->world;
     uint32_t pending = 0;
     for (int i = 0; i < SINK_LANES; i++)
         pending |= (uint32_t)lanes[i].shadow.pending << i;
-    if (first && !ctx->world->shadow_rays_may_pass && run_together(lanes, pending))
-        finish_as_packet(ctx, lanes, pending);
+    const bool together = first && run_together(lanes, pending);
+    const bool many = __builtin_popcount(pending) >= LEAST_IN_PACKET;
+    if (!w->shadow_rays_may_pass && (together || (w->packets_pay && many)))
+        finish_as_packet(ctx, lanes, pending, together);
     else
         for (int i = 0; i < SINK_LANES; i++)
             if (pending >> i & 1)
@@ -211,28 +216,43 @@ static void finish_shadows(struct trace_context *ctx, struct lane lanes[SINK_LAN
         lanes[i].shadow.pending = false;
 }
 
+// The next hits of all living lanes: the camera's rays as a packet, later ones where that pays.
+static void find_hits(struct trace_context *ctx, const struct lane lanes[SINK_LANES], bool camera,
+                      struct accel_hit hits[SINK_LANES]) {
+    const struct accel *accel = ctx->world->accel;
+    uint32_t alive = 0;
+    for (int i = 0; i < SINK_LANES; i++)
+        alive |= (uint32_t)lanes[i].alive << i;
+    const int count = __builtin_popcount(alive);
+    ctx->rays += (uint64_t)count;
+    if (camera || (ctx->world->packets_pay && count >= LEAST_IN_PACKET)) {
+        struct ray rays[SINK_LANES];
+        for (int i = 0; i < SINK_LANES; i++)
+            rays[i] = lanes[i].ray;
+        accel_intersect16(accel, rays, alive, camera, hits);
+        return;
+    }
+    for (int i = 0; i < SINK_LANES; i++)
+        if (lanes[i].alive)
+            accel_intersect(accel, &lanes[i].ray, &hits[i]);
+}
+
 static void trace(const void *data, struct trace_context *ctx,
                   const struct path_start starts[SINK_LANES]) {
     const struct path *p = data;
     struct lane lanes[SINK_LANES];
     struct accel_hit hits[SINK_LANES];
-    struct ray rays[SINK_LANES];
-    for (int i = 0; i < SINK_LANES; i++) {
+    for (int i = 0; i < SINK_LANES; i++)
         start(ctx, &lanes[i], &starts[i]);
-        rays[i] = starts[i].ray;
-    }
     if (!may_contribute(p, 0))
         return;
-    accel_intersect16(ctx->world->accel, rays, 0xffff, hits);
     for (bool any = true, camera = true; any; camera = false) {
         any = false;
+        find_hits(ctx, lanes, camera, hits);
         for (int i = 0; i < SINK_LANES; i++) {
             struct lane *l = &lanes[i];
             if (!l->alive)
                 continue;
-            ctx->rays++;
-            if (!camera)
-                accel_intersect(ctx->world->accel, &l->ray, &hits[i]);
             if (hits[i].shape == SCENE_NONE)
                 leave_scene(p, ctx, i, l);
             else

@@ -5,7 +5,11 @@
 #include "base/mem.h"
 #include "base/thread.h"
 
+// Measured with tests/bench/packets: bounces of 16 lanes as a packet against single rays.
+enum { MOST_FOR_PACKETS = 2000 };
+
 static void init_shapes(struct world *w, const struct scene *s) {
+    uint64_t primitives = 0;
     w->shapes = mem_array(s->shape_count, sizeof *w->shapes);
     for (uint32_t i = 0; i < s->shape_count; i++) {
         const struct shape *from = &s->shapes[i];
@@ -15,7 +19,9 @@ static void init_shapes(struct world *w, const struct scene *s) {
             .normals = (const void *)m->normals, .uvs = (const void *)m->uvs, .mesh = m,
             .bsdf = from->bsdf, .light = from->light, .kind = (uint8_t)from->kind,
             .flip_normals = from->flip_normals};
+        primitives += from->kind == SHAPE_MESH ? m->triangle_count : 1;
     }
+    w->packets_pay = primitives <= MOST_FOR_PACKETS && s->instance_count == 0;
 }
 
 static bool prepare_textures(struct scene *s) {
@@ -157,8 +163,12 @@ struct ray world_shadow_ray(const struct surface *s, const struct light_sample *
     const vec3 o = surface_offset(s, l->wi);
     if (!(l->distance < INFINITY))
         return (struct ray){o, l->wi, 0, INFINITY};
-    const vec3 target = length2(l->n) > 0 ? offset_point(l->p, l->p_error, l->n, -l->wi) : l->p;
-    return (struct ray){o, target - o, 0, 1};
+    if (!(length2(l->n) > 0))
+        return (struct ray){o, l->p - o, 0, 1};
+    // The ray tracer works with positions relative to the origin: its error grows with the distance.
+    const float reach = 4 * 0x1p-24f * largest(l->p - o);
+    const vec3 error = l->p_error + v3(reach, reach, reach);
+    return (struct ray){o, offset_point(l->p, error, l->n, -l->wi) - o, 0, 1};
 }
 
 spectrum world_transmittance(const struct world *w, struct ray ray,

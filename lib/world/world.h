@@ -47,6 +47,7 @@ struct world {
     struct world_transform *quadrics;  // by shape; NULL: the scene has none
     struct world_transform *instances; // by instance
     bool shadow_rays_may_pass;  // some material lets rays straight through
+    bool packets_pay;           // so few primitives that packets win whichever way the rays run
     bool tangents_matter;       // some material is anisotropic or perturbs its normal
     vec3 centre;                // bounding sphere of all shapes
     float radius;

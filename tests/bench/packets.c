@@ -15,24 +15,25 @@
 
 static bool singles; // packets are traced ray by ray
 
-void __real_accel_intersect16(const struct accel *, const struct ray *, uint32_t, struct accel_hit *);
-uint32_t __real_accel_occluded16(const struct accel *, const struct ray *, uint32_t);
-void __wrap_accel_intersect16(const struct accel *, const struct ray *, uint32_t, struct accel_hit *);
-uint32_t __wrap_accel_occluded16(const struct accel *, const struct ray *, uint32_t);
+void __real_accel_intersect16(const struct accel *, const struct ray *, uint32_t, bool, struct accel_hit *);
+uint32_t __real_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
+void __wrap_accel_intersect16(const struct accel *, const struct ray *, uint32_t, bool, struct accel_hit *);
+uint32_t __wrap_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 
 void __wrap_accel_intersect16(const struct accel *a, const struct ray *r, uint32_t active,
-                              struct accel_hit *h) {
+                              bool coherent, struct accel_hit *h) {
     if (!singles)
-        __real_accel_intersect16(a, r, active, h);
+        __real_accel_intersect16(a, r, active, coherent, h);
     for (int i = 0; singles && i < ACCEL_PACKET; i++)
         if (active >> i & 1)
             accel_intersect(a, &r[i], &h[i]);
 }
 
-uint32_t __wrap_accel_occluded16(const struct accel *a, const struct ray *r, uint32_t active) {
+uint32_t __wrap_accel_occluded16(const struct accel *a, const struct ray *r, uint32_t active,
+                                bool coherent) {
     uint32_t blocked = 0;
     if (!singles)
-        return __real_accel_occluded16(a, r, active);
+        return __real_accel_occluded16(a, r, active, coherent);
     for (int i = 0; i < ACCEL_PACKET; i++)
         if (active >> i & 1)
             blocked |= (uint32_t)accel_occluded(a, &r[i]) << i;
@@ -80,7 +81,7 @@ static double time_camera(const struct accel *a, const struct rays *r) {
     struct accel_hit hits[ACCEL_PACKET];
     const double start = time_seconds();
     for (size_t k = 0; k < r->packets; k++)
-        __wrap_accel_intersect16(a, r->camera + k * ACCEL_PACKET, 0xffff, hits);
+        __wrap_accel_intersect16(a, r->camera + k * ACCEL_PACKET, 0xffff, true, hits);
     return time_seconds() - start;
 }
 
@@ -88,7 +89,7 @@ static double time_shadow(const struct accel *a, const struct rays *r) {
     volatile uint32_t blocked = 0;
     const double start = time_seconds();
     for (size_t k = 0; k < r->packets; k++)
-        blocked += __wrap_accel_occluded16(a, r->shadow + k * ACCEL_PACKET, r->pending[k]);
+        blocked += __wrap_accel_occluded16(a, r->shadow + k * ACCEL_PACKET, r->pending[k], true);
     return time_seconds() - start;
 }
 

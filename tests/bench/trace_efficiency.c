@@ -38,12 +38,12 @@ static void record(const struct ray *ray, bool shadow) {
 
 bool __real_accel_intersect(const struct accel *, const struct ray *, struct accel_hit *);
 bool __real_accel_occluded(const struct accel *, const struct ray *);
-void __real_accel_intersect16(const struct accel *, const struct ray *, uint32_t, struct accel_hit *);
-uint32_t __real_accel_occluded16(const struct accel *, const struct ray *, uint32_t);
+void __real_accel_intersect16(const struct accel *, const struct ray *, uint32_t, bool, struct accel_hit *);
+uint32_t __real_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 bool __wrap_accel_intersect(const struct accel *, const struct ray *, struct accel_hit *);
 bool __wrap_accel_occluded(const struct accel *, const struct ray *);
-void __wrap_accel_intersect16(const struct accel *, const struct ray *, uint32_t, struct accel_hit *);
-uint32_t __wrap_accel_occluded16(const struct accel *, const struct ray *, uint32_t);
+void __wrap_accel_intersect16(const struct accel *, const struct ray *, uint32_t, bool, struct accel_hit *);
+uint32_t __wrap_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 
 bool __wrap_accel_intersect(const struct accel *a, const struct ray *r, struct accel_hit *h) {
     if (recording)
@@ -58,18 +58,19 @@ bool __wrap_accel_occluded(const struct accel *a, const struct ray *r) {
 }
 
 void __wrap_accel_intersect16(const struct accel *a, const struct ray *r, uint32_t active,
-                              struct accel_hit *h) {
+                              bool coherent, struct accel_hit *h) {
     for (int i = 0; recording && i < 16; i++)
         if (active >> i & 1)
             record(&r[i], false);
-    __real_accel_intersect16(a, r, active, h);
+    __real_accel_intersect16(a, r, active, coherent, h);
 }
 
-uint32_t __wrap_accel_occluded16(const struct accel *a, const struct ray *r, uint32_t active) {
+uint32_t __wrap_accel_occluded16(const struct accel *a, const struct ray *r, uint32_t active,
+                                bool coherent) {
     for (int i = 0; recording && i < 16; i++)
         if (active >> i & 1)
             record(&r[i], true);
-    return __real_accel_occluded16(a, r, active);
+    return __real_accel_occluded16(a, r, active, coherent);
 }
 
 static double replay(const struct accel *accel) {
