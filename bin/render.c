@@ -136,6 +136,8 @@ static int run(const void *values, const char *command) {
     if (!is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
         (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
         return EXIT_USAGE;
+    if (v->quiet)
+        log_set_level(LOG_WARN);
     struct arena arena = {0};
     const struct scene_define *defines = defines_parse(&v->defines, &arena);
     const int code = defines ? run_job(v, command, defines) : EXIT_USAGE;

@@ -71,12 +71,12 @@ static void test_room(const struct room *r, const char *integrator, const char *
 }
 
 int main(void) {
-    const char *const integrators[] = {"path", "simple", "direct"};
+    const char *const methods[] = {"path", "simple", "direct"};
     scene_folder_open();
     for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++)
         for (int j = 0; j < 3; j++)
             for (const struct entry *const *s = samplers.entries; *s; s++)
-                test_room(&rooms[i], integrators[j], (*s)->name);
+                test_room(&rooms[i], methods[j], (*s)->name);
     scene_folder_close();
     ztable_finish(FALSE_ALARMS);
     return check_result();
