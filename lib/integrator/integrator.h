@@ -4,7 +4,7 @@
 // A group of 16 paths that start side by side is traced together, so that camera and shadow rays
 // may run as packets; each lane's random numbers and contributions are those it would have alone.
 // Depth counts path edges as Mitsuba does: max_depth 1 sees emitters only, 2 adds direct light,
-// -1 is unlimited. Straight-through (null) events do not count.
+// -1 is unlimited. A surface that is passed straight through (a mask) ends an edge too, as there.
 #pragma once
 
 #include "integrator/response.h"

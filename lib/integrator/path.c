@@ -59,8 +59,8 @@ static bool same_side(const struct surface *s, vec3 w, vec3 wl) {
     return dot(w, s->ng) * cos_theta(wl) > 0;
 }
 
-static bool may_contribute(const struct path *p, uint32_t depth) {
-    return p->max_depth < 0 || depth < (uint32_t)p->max_depth;
+static bool may_contribute(const struct path *p, uint32_t edges) {
+    return p->max_depth < 0 || edges < (uint32_t)p->max_depth;
 }
 
 static void leave_scene(const struct path *p, struct trace_context *ctx, int i, struct lane *l) {
@@ -124,6 +124,8 @@ static void sample_light(const struct path *p, struct trace_context *ctx, struct
     struct contribution *c = &l->shadow.contribution;
     if (!l->shadow.pending)
         return;
+    if (p->max_depth >= 0)
+        l->shadow.most_passes = p->max_depth - 2 - (int)l->events;
     if (p->strict_normals && !same_side(s, c->wi, to_local(&s->point.frame, c->wi)))
         l->shadow.pending = false;
     c->weight *= l->beta;
@@ -141,7 +143,7 @@ static void shade(const struct path *p, struct trace_context *ctx, int i, struct
         vertex_add_emission(ctx, i, &s, l->ray.d, l->beta, &l->from);
     const vec3 wo = to_local(&s.point.frame, -l->ray.d);
     const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
-    const bool goes_on = closure && may_contribute(p, l->from.depth + 1) &&
+    const bool goes_on = closure && may_contribute(p, l->events + 1) &&
                          (!p->strict_normals || same_side(&s, -l->ray.d, wo));
     if (goes_on && closure->lobes & LOBE_SMOOTH)
         sample_light(p, ctx, l, &s, closure);

@@ -18,7 +18,7 @@ static const struct param params[] = {
 // Every delta light, one after the other.
 static void add_delta_lights(struct trace_context *ctx, int lane, const struct surface *s,
                              const struct closure *closure, spectrum beta,
-                             const struct path_origin *from) {
+                             const struct path_origin *from, int most_passes) {
     for (uint32_t i = 0; i < ctx->world->light_count; i++) {
         const struct world_light *light = &ctx->world->lights[i];
         struct light_sample l;
@@ -27,7 +27,7 @@ static void add_delta_lights(struct trace_context *ctx, int lane, const struct s
             continue;
         const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf);
         const struct wavelengths rgb = {0};
-        const spectrum through = world_transmittance(ctx->world, world_shadow_ray(s, &l), rgb);
+        const spectrum through = world_transmittance(ctx->world, world_shadow_ray(s, &l), most_passes, rgb);
         sink_add(ctx->sink, lane,
                  &(struct contribution){beta * f * through / l.pdf_sa, l.emission, i, from->depth + 1,
                                         from->depth ? from->lobe : closure->lobes, l.wi});
@@ -40,7 +40,7 @@ static void trace_one(const struct simple *p, struct trace_context *ctx, int lan
     struct sampler sampler = start->sampler;
     spectrum beta = spectrum_grey(1);
     struct path_origin from = {.p = ray.o, .delta = true};
-    for (uint32_t events = 0; p->max_depth < 0 || from.depth < (uint32_t)p->max_depth; events++) {
+    for (int events = 0; p->max_depth < 0 || events < p->max_depth; events++) {
         struct accel_hit hit;
         struct surface s;
         struct bsdf_sample b;
@@ -60,8 +60,9 @@ static void trace_one(const struct simple *p, struct trace_context *ctx, int lan
         const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
         if (!closure)
             return;
-        if (p->max_depth < 0 || from.depth + 1 < (uint32_t)p->max_depth)
-            add_delta_lights(ctx, lane, &s, closure, beta, &from);
+        if (p->max_depth < 0 || events + 1 < p->max_depth)
+            add_delta_lights(ctx, lane, &s, closure, beta, &from,
+                             p->max_depth < 0 ? -1 : p->max_depth - 2 - events);
         const float lobe = sampler_1d(&sampler);
         if (!closure_sample(closure, lobe, sampler_2d(&sampler), &b))
             return;

@@ -39,6 +39,7 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
                          const struct closure *closure, float u1, struct vec2 u2, float rivals,
                          struct shadow_test *test) {
     test->pending = false;
+    test->most_passes = -1;
     float pmf, pdf_bsdf;
     const uint32_t index = world_choose_light(ctx->world, u1, &pmf);
     if (index == SCENE_NONE)
@@ -61,7 +62,7 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
 void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test *test) {
     const struct wavelengths rgb = {0};
     ctx->shadow_rays++;
-    const spectrum through = world_transmittance(ctx->world, test->ray, rgb);
+    const spectrum through = world_transmittance(ctx->world, test->ray, test->most_passes, rgb);
     if (spectrum_is_black(through))
         return;
     test->contribution.weight *= through;

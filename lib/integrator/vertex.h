@@ -32,6 +32,7 @@ void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum b
 struct shadow_test {
     struct ray ray;
     struct contribution contribution;
+    int most_passes; // straight through surfaces, each an edge of the path; negative: no limit
     bool pending;
 };
 

@@ -171,17 +171,20 @@ struct ray world_shadow_ray(const struct surface *s, const struct light_sample *
     return (struct ray){o, offset_point(l->p, error, l->n, -l->wi) - o, 0, 1};
 }
 
-spectrum world_transmittance(const struct world *w, struct ray ray,
+spectrum world_transmittance(const struct world *w, struct ray ray, int most,
                              struct wavelengths wavelengths) {
     enum { MOST_SURFACES = 256 }; // more than that straight through counts as opaque
+    const int limit = most < 0 || most > MOST_SURFACES ? MOST_SURFACES : most;
     if (!w->shadow_rays_may_pass)
         return spectrum_grey(accel_occluded(w->accel, &ray) ? 0 : 1);
     spectrum through = spectrum_grey(1);
-    for (int i = 0; i < MOST_SURFACES; i++) {
+    for (int i = 0; i <= limit; i++) {
         struct accel_hit hit;
         struct surface s;
         if (!accel_intersect(w->accel, &ray, &hit))
             return through;
+        if (i == limit)
+            break;
         world_surface(w, &ray, &hit, &s);
         s.point.wavelengths = wavelengths;
         const struct object *bsdf = s.bsdf;

@@ -90,6 +90,7 @@ static inline vec3 surface_offset(const struct surface *s, vec3 w) {
 // The shadow ray from a surface to a sampled point of a light: t in (0, 1), or to infinity.
 struct ray world_shadow_ray(const struct surface *s, const struct light_sample *l);
 
-// Share of light that comes through along a shadow ray: 0 where anything opaque is in the way.
-spectrum world_transmittance(const struct world *w, struct ray ray,
+// Share of light that comes through along a shadow ray: 0 where anything opaque is in the way, or
+// more than `most` surfaces that let light straight through (negative: no limit).
+spectrum world_transmittance(const struct world *w, struct ray ray, int most,
                              struct wavelengths wavelengths);
