@@ -85,11 +85,12 @@ static double time_camera(const struct accel *a, const struct rays *r) {
     return time_seconds() - start;
 }
 
-static double time_shadow(const struct accel *a, const struct rays *r) {
-    volatile uint32_t blocked = 0;
+static double time_shadow(const struct accel *a, const struct rays *r, uint64_t *blocked) {
+    *blocked = 0;
     const double start = time_seconds();
     for (size_t k = 0; k < r->packets; k++)
-        blocked += __wrap_accel_occluded16(a, r->shadow + k * ACCEL_PACKET, r->pending[k], true);
+        *blocked += (uint64_t)__builtin_popcount(
+            __wrap_accel_occluded16(a, r->shadow + k * ACCEL_PACKET, r->pending[k], true));
     return time_seconds() - start;
 }
 
@@ -108,14 +109,14 @@ static double median(double v[REPEATS]) {
 static void compare_stages(const struct job *job, int width, int height) {
     struct rays r;
     double camera[2][REPEATS], shadow[2][REPEATS];
-    uint64_t pending = 0;
+    uint64_t pending = 0, blocked = 0;
     make_rays(job, width, height, &r);
     for (size_t k = 0; k < r.packets; k++)
         pending += (uint64_t)__builtin_popcount(r.pending[k]);
     for (int i = 0; i < 2 * REPEATS; i++) {
         singles = i % 2;
         camera[singles][i / 2] = time_camera(job->world->accel, &r);
-        shadow[singles][i / 2] = time_shadow(job->world->accel, &r);
+        shadow[singles][i / 2] = time_shadow(job->world->accel, &r, &blocked);
     }
     const double rays = (double)(r.packets * ACCEL_PACKET) * 1e-6, tests = (double)pending * 1e-6;
     const double c[2] = {median(camera[0]), median(camera[1])};
@@ -123,8 +124,9 @@ static void compare_stages(const struct job *job, int width, int height) {
     printf("  camera rays:  packets %6.2f, single %6.2f Mrays/s, ratio %.2f\n", rays / c[0],
            rays / c[1], c[1] / c[0]);
     if (pending)
-        printf("  first shadow: packets %6.2f, single %6.2f Mrays/s, ratio %.2f\n", tests / s[0],
-               tests / s[1], s[1] / s[0]);
+        printf("  first shadow: packets %6.2f, single %6.2f Mrays/s, ratio %.2f "
+               "(%.0f %% blocked)\n", tests / s[0], tests / s[1], s[1] / s[0],
+               100 * (double)blocked / (double)pending);
     mem_free(r.camera);
     mem_free(r.shadow);
     mem_free(r.pending);

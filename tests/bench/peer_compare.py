@@ -5,7 +5,7 @@
     peer_compare.py --relume PROGRAM SCENE:WxH:SPP ...
 
 Render time only (no loading, no compilation), medians. Equal samples: both with their independent
-sampler. Equal error: time x relMSE against one reference (relume, another seed, 32 times the
+sampler. Equal error: time x relMSE against one reference (relume, another seed, 16 times the
 samples), which is the time to a given relMSE where error falls as 1/N; relume with its default
 sampler, Mitsuba llvm with the better of independent and multijitter.
 """
@@ -56,7 +56,7 @@ def mitsuba(scene, variant, size, spp, sampler, reference):
 def compare(args, scene, size, spp):
     with tempfile.TemporaryDirectory() as folder:
         reference, out = f"{folder}/reference.exr", f"{folder}/out.exr"
-        relume(args, scene, size, 32 * spp, "sobol", 4711, reference)
+        relume(args, scene, size, 16 * spp, "sobol", 4711, reference)
         truth = read_rgb(reference)
         ours, best, error = [], [], []
         peers = {key: ([], []) for key in

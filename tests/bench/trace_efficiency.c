@@ -73,9 +73,9 @@ uint32_t __wrap_accel_occluded16(const struct accel *a, const struct ray *r, uin
     return __real_accel_occluded16(a, r, active, coherent);
 }
 
-static double replay(const struct accel *accel) {
+static double replay(const struct accel *accel, size_t *hits) {
     RTCScene scene = accel_embree_scene(accel);
-    volatile unsigned hits = 0;
+    *hits = 0;
     accel_thread_init();
     const double start = time_seconds();
 #if !EMBREE_4
@@ -99,7 +99,7 @@ static double replay(const struct accel *accel) {
         else
             rtcIntersect1(scene, &context, &rh);
 #endif
-        hits += rh.hit.geomID != RTC_INVALID_GEOMETRY_ID || rh.ray.tfar < 0;
+        *hits += rh.hit.geomID != RTC_INVALID_GEOMETRY_ID || rh.ray.tfar < 0;
     }
     return time_seconds() - start;
 }
@@ -132,6 +132,7 @@ int main(int argc, char **argv) {
     struct job job;
     struct render_result r;
     double render[REPEATS], bare[REPEATS], ratio[REPEATS];
+    size_t hits = 0;
     if (!job_open(&job, &options))
         return 1;
     recording = true;
@@ -139,13 +140,14 @@ int main(int argc, char **argv) {
     recording = false;
     for (int i = 0; i < REPEATS; i++) {
         render[i] = render_once(&job, &r);
-        bare[i] = replay(job.world->accel);
+        bare[i] = replay(job.world->accel, &hits);
         ratio[i] = bare[i] / render[i];
     }
     printf("%s: %.2f rays a path, render %.3f Mpaths/s, bare rays %.2f Mrays/s, "
-           "trace efficiency %.3f\n", argv[1], (double)record_count / (double)r.paths,
+           "trace efficiency %.3f (%.0f %% of the rays hit)\n", argv[1], (double)record_count / (double)r.paths,
            (double)r.paths / median(render, REPEATS) * 1e-6,
-           (double)record_count / median(bare, REPEATS) * 1e-6, median(ratio, REPEATS));
+           (double)record_count / median(bare, REPEATS) * 1e-6, median(ratio, REPEATS),
+           100 * (double)hits / (double)record_count);
     job_close(&job);
     mem_free(records);
     return 0;
