@@ -16,6 +16,12 @@ struct arena_block {
     size_t used, size; // bytes after this header
 };
 
+struct arena_shared {
+    const char *kind, *name;
+    void *thing;
+    struct arena_shared *next;
+};
+
 static _Noreturn void out_of_memory(size_t count, size_t size, const char *file, int line) {
     fprintf(stderr, "relume: out of memory: %zu x %zu bytes at %s:%d\n", count, size, file, line);
     abort();
@@ -90,6 +96,19 @@ char *arena_printf(struct arena *a, const char *format, ...) {
     va_end(again);
     va_end(args);
     return s;
+}
+
+void *arena_find(const struct arena *a, const char *kind, const char *name) {
+    for (const struct arena_shared *s = a->shared; s; s = s->next)
+        if (strcmp(s->kind, kind) == 0 && strcmp(s->name, name) == 0)
+            return s->thing;
+    return NULL;
+}
+
+void arena_keep(struct arena *a, const char *kind, const char *name, void *thing) {
+    struct arena_shared *s = arena_alloc(a, sizeof *s);
+    *s = (struct arena_shared){arena_strdup(a, kind), arena_strdup(a, name), thing, a->shared};
+    a->shared = s;
 }
 
 void arena_finish(struct arena *a) {

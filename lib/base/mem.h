@@ -26,10 +26,15 @@ size_t mem_peak(void);
 struct arena {
     struct arena_block *last; // zero-initialise: an empty arena
     size_t total;             // bytes handed out
+    struct arena_shared *shared;
 };
 
 // Zeroed memory, 64-byte aligned for objects of 64 bytes and more, else 16; owned by the arena.
 void *arena_alloc(struct arena *a, size_t size);
 char *arena_strdup(struct arena *a, const char *s);
 char *arena_printf(struct arena *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// A thing that several objects of the arena share, such as the table of a file: what was kept under
+// that kind (a string constant, say) and name, or NULL. The thing lives in the arena.
+void *arena_find(const struct arena *a, const char *kind, const char *name);
+void arena_keep(struct arena *a, const char *kind, const char *name, void *thing);
 void arena_finish(struct arena *a); // frees everything, leaves an empty arena

@@ -14,9 +14,9 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "mesh/corner.h"
 #include "mesh/reader.h"
-#include "mesh/text.h"
 
 struct list {
     float *data; // count times width values

@@ -12,11 +12,11 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
+#include "base/text.h"
 #include "math/colour.h"
 #include "mesh/ply_attribute.h"
 #include "mesh/ply_source.h"
 #include "mesh/reader.h"
-#include "mesh/text.h"
 
 enum decode { DECODE_PLAIN, DECODE_SHARE, DECODE_SRGB };
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/log.h"
-#include "mesh/text.h"
+#include "base/text.h"
 
 enum { MOST_TOKENS = 6, MOST_TOKEN = 64 };
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "mesh/text.h"
+#include "base/text.h"
 
 struct ply_source ply_source_open(const char *path, const char *text, size_t size,
                                   const struct ply_header *h) {

@@ -250,7 +250,8 @@ static struct xml_node *load_file(struct reader *r, const char *path,
     if (!data)
         return NULL;
     r->scene->hash = file_hash(data, size, r->scene->hash);
-    struct xml_node *root = xml_parse(data, size, path, r->arena, &r->node_count);
+    struct xml_node *root = xml_parse(data, size, path, XML_TEXT_REPORTED, r->arena,
+                                      &r->node_count);
     mem_free(data);
     bool old = false;
     if (root && !includer && strcmp(root->tag, "scene") != 0) {

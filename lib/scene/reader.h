@@ -5,8 +5,8 @@
 // then the others turn elements of that tree into objects, shapes and settings.
 #pragma once
 
+#include "base/xml.h"
 #include "scene/scene.h"
-#include "scene/xml.h"
 
 // ---- growing arrays -------------------------------------------------------------------------
 

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "check.h"
 #include "math/hash.h"
-#include "mesh/text.h"
 
 // Number of doubles between a and b, zero when they are equal.
 static double ulps(double a, double b) {

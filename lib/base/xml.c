@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/xml.h"
+#include "base/xml.h"
 
 #include <ctype.h>
 #include <expat.h>
 #include <limits.h>
 #include <string.h>
+
+struct buffer {
+    char *data;
+    size_t used, capacity;
+};
 
 struct parse {
     XML_Parser parser;
@@ -12,8 +17,10 @@ struct parse {
     const char *file;
     struct xml_node *root;
     struct xml_node *open[XML_MOST_DEPTH];
+    struct buffer text[XML_MOST_DEPTH]; // of the open elements, when it is kept
     int depth;
     size_t *node_count;
+    enum xml_text text_use;
     bool failed, text_reported;
 };
 
@@ -71,12 +78,29 @@ static void XMLCALL on_start(void *user, const char *tag, const char **attribute
 static void XMLCALL on_end(void *user, const char *tag) {
     struct parse *p = user;
     (void)tag;
-    if (!p->failed)
-        p->depth--;
+    if (p->failed)
+        return;
+    struct buffer *b = &p->text[--p->depth];
+    if (b->used > 0)
+        p->open[p->depth]->text = arena_strdup(p->arena, b->data);
+    b->used = 0;
+}
+
+static void keep_text(struct buffer *b, const char *text, size_t length) {
+    mem_grow(&b->data, &b->capacity, b->used + length + 1, 1);
+    memcpy(b->data + b->used, text, length);
+    b->used += length;
+    b->data[b->used] = '\0';
 }
 
 static void XMLCALL on_text(void *user, const char *text, int length) {
     struct parse *p = user;
+    if (p->failed || p->depth == 0)
+        return;
+    if (p->text_use == XML_TEXT_KEPT) {
+        keep_text(&p->text[p->depth - 1], text, (size_t)length);
+        return;
+    }
     for (int i = 0; i < length && !p->text_reported && !p->failed; i++)
         if (!isspace((unsigned char)text[i])) {
             log_warn_at(here(p), "text inside <%s> means nothing", p->open[p->depth - 1]->tag);
@@ -112,22 +136,31 @@ static bool parse_all(struct parse *p, const char *data, size_t size) {
     return !p->failed;
 }
 
-struct xml_node *xml_parse(const char *data, size_t size, const char *file, struct arena *arena,
-                           size_t *node_count) {
+struct xml_node *xml_parse(const char *data, size_t size, const char *file, enum xml_text text,
+                           struct arena *arena, size_t *node_count) {
     if (size > XML_MOST_BYTES) {
         log_error("%s: has %zu bytes, more than the %zu that are accepted", file, size,
                   XML_MOST_BYTES);
         return NULL;
     }
     struct parse p = {XML_ParserCreate(NULL), arena, arena_strdup(arena, file),
-                      .node_count = node_count};
+                      .node_count = node_count, .text_use = text};
     XML_SetUserData(p.parser, &p);
     XML_SetElementHandler(p.parser, on_start, on_end);
     XML_SetCharacterDataHandler(p.parser, on_text);
     XML_SetEntityDeclHandler(p.parser, on_entity);
     const bool ok = parse_all(&p, data, size);
     XML_ParserFree(p.parser);
+    for (int i = 0; i < XML_MOST_DEPTH; i++)
+        mem_free(p.text[i].data);
     return ok ? p.root : NULL;
+}
+
+struct xml_node *xml_child(const struct xml_node *node, const char *tag) {
+    for (struct xml_node *c = node->first; c; c = c->next)
+        if (strcmp(c->tag, tag) == 0)
+            return c;
+    return NULL;
 }
 
 const char *xml_get(const struct xml_node *node, const char *attribute) {
