@@ -78,6 +78,7 @@ static void set_render_options(struct job *job, const struct job_options *o) {
     job->render = (struct render_options){
         .sampler = (const struct sampler_type *)s->sampler->type,
         .spp = (uint32_t)(o->spp ? o->spp : s->sample_count ? s->sample_count : DEFAULT_SPP),
+        .end = (uint64_t)(o->spp ? o->spp : s->sample_count ? s->sample_count : DEFAULT_SPP),
         .seed = o->seed, .replicates = o->variance ? FILM_REPLICATES : 1, .threads = o->threads,
         .stop = o->stop, .progress = o->progress, .user = o->user};
 }

@@ -113,15 +113,60 @@ static void destroy_workers(struct worker *workers, int threads, struct render_r
     mem_free(workers);
 }
 
+static double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
 // Length of the next pass: about PASS_SECONDS, never across a block of the film.
-static uint32_t pass_length(uint64_t done, uint32_t spp, double seconds_per_sample) {
-    const uint64_t to_block = FILM_BLOCK - done % FILM_BLOCK, left = spp - done;
-    double most = seconds_per_sample > 0 ? PASS_SECONDS / seconds_per_sample : 1;
+static uint32_t pass_length(uint64_t next, const struct render_options *o,
+                            double seconds_per_sample, double seconds) {
+    const uint64_t to_block = FILM_BLOCK - next % FILM_BLOCK, left = o->end - next;
+    const double wished = o->seconds > 0 ? smaller(PASS_SECONDS, o->seconds - seconds) : PASS_SECONDS;
+    double most = seconds_per_sample > 0 ? wished / seconds_per_sample : 1;
     most = most < 1 ? 1 : most;
     uint64_t n = to_block < left ? to_block : left;
     if ((double)n > most)
         n = (uint64_t)most;
     return (uint32_t)n;
+}
+
+// What the run has come to so far.
+struct state {
+    double seconds, noise; // noise: at the last whole block; negative: not known
+};
+
+// Share of the way to the limit that will be met first. Squared noise falls as one over samples.
+static double share_done(const struct render_options *o, const struct film *film,
+                         const struct state *s) {
+    double share = (double)(film_next(film) - film_first(film)) / (double)(o->end - film_first(film));
+    if (o->seconds > 0)
+        share = share > s->seconds / o->seconds ? share : s->seconds / o->seconds;
+    if (o->noise > 0 && s->noise > 0) {
+        const double way = o->noise / s->noise * (o->noise / s->noise);
+        share = share > way ? share : way;
+    }
+    return smaller(share, 1);
+}
+
+// Whether to go on. The noise is looked at between blocks only: a rule that may stop after any
+// sample would favour pictures that look good by chance.
+static bool goes_on(const struct render_options *o, const struct film *film, struct state *s) {
+    if (film_next(film) >= o->end || (o->stop && *o->stop))
+        return false;
+    if (o->seconds > 0 && s->seconds >= o->seconds)
+        return false;
+    if (o->noise > 0 && film_next(film) % FILM_BLOCK == 0) {
+        s->noise = film_noise(film);
+        return s->noise < 0 || s->noise > o->noise;
+    }
+    return true;
+}
+
+static bool was_cut_short(const struct render_options *o, const struct film *film, double seconds,
+                          double noise) {
+    if (o->noise > 0)
+        return !(noise >= 0 && noise <= o->noise);
+    return film_next(film) < o->end && !(o->seconds > 0 && seconds >= o->seconds);
 }
 
 void render(const struct world *world, const struct object *sensor, const struct object *integrator,
@@ -134,20 +179,23 @@ void render(const struct world *world, const struct object *sensor, const struct
                      .options = options, .film = film,
                      .workers = create_workers(world, film, threads)};
     double per_sample = 0;
-    while (film_samples(film) < options->spp && !(options->stop && *options->stop)) {
+    struct state state = {.noise = -1};
+    while (goes_on(options, film, &state)) {
         const double pass_start = time_seconds();
-        p.first = (uint32_t)film_samples(film);
-        p.count = pass_length(p.first, options->spp, per_sample);
+        p.first = (uint32_t)film_next(film);
+        p.count = pass_length(p.first, options, per_sample, state.seconds);
         thread_for(threads, film_tile_count(film), trace_tile, &p);
         if (atomic_load(&p.abandoned))
             break;
         film_commit(film, p.count);
+        state.seconds = time_seconds() - start;
         per_sample = (time_seconds() - pass_start) / p.count;
         if (options->progress)
-            options->progress(options->user, (double)film_samples(film) / options->spp, film);
+            options->progress(options->user, share_done(options, film, &state), film);
     }
     result->samples = film_samples(film);
-    result->stopped = result->samples < options->spp;
+    result->noise = film_noise(film);
+    result->stopped = was_cut_short(options, film, state.seconds, result->noise);
     destroy_workers(p.workers, threads, result);
     result->seconds = time_seconds() - start;
 }

@@ -14,7 +14,10 @@
 
 struct render_options {
     const struct sampler_type *sampler;
-    uint32_t spp;        // samples per pixel wanted, >= 1
+    uint32_t spp;        // samples per pixel the sampler lays its points out for, >= 1
+    uint64_t end;        // stop at the sample of this number
+    double seconds;      // stop after so long; 0: no limit
+    double noise;        // stop when film_noise is no more than this; 0: no limit
     uint32_t seed;
     uint32_t replicates; // independent scramblings a pixel's samples are dealt to: 1 to 16, power of 2
     int threads;         // 0: default
@@ -26,7 +29,8 @@ struct render_options {
 
 struct render_result {
     uint64_t samples; // of every pixel
-    bool stopped;     // before all samples were done
+    bool stopped;     // before any limit, or short of the noise that was asked for
+    double noise;     // of the picture; negative: not known
     double seconds;
     uint64_t rays, shadow_rays, paths, truncated;
 };

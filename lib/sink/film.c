@@ -9,8 +9,6 @@
 #include "base/mem.h"
 #include "sink/film_layout.h"
 
-enum { MOST_LEVELS = 40 }; // of the tree of blocks: 64 * 2^39 samples
-
 struct film {
     struct film_options options;
     struct film_layout layout;
@@ -18,9 +16,9 @@ struct film {
     size_t tile_values;                     // doubles a tile takes
     double *open[2];                        // sums of the unfinished block: committed, running
     int committed;
-    double *levels[MOST_LEVELS]; // binary counter: sums of 2^k blocks, or NULL
-    uint64_t blocks;             // finished
-    uint32_t open_samples;       // committed samples of the unfinished block
+    struct sums sums;            // of finished blocks
+    uint64_t block;              // the unfinished one
+    uint32_t open_samples;       // its committed samples
     atomic_ullong rejected;
 };
 
@@ -42,7 +40,7 @@ struct film_view {
 
 // ---- film ---------------------------------------------------------------------------------------
 
-static size_t film_values(const struct film *f) {
+size_t film_values(const struct film *f) {
     return f->tile_values * film_tile_count(f);
 }
 
@@ -57,14 +55,16 @@ struct film *film_create(const struct film_options *options) {
     f->tile_values = (size_t)FILM_TILE * FILM_TILE * f->layout.channels;
     for (int i = 0; i < 2; i++)
         f->open[i] = mem_array(film_values(f), sizeof *f->open[i]);
+    sums_init(&f->sums, film_values(f));
+    assert(options->first % FILM_BLOCK == 0);
+    f->block = options->first / FILM_BLOCK;
     return f;
 }
 
 void film_destroy(struct film *f) {
     if (!f)
         return;
-    for (int i = 0; i < MOST_LEVELS; i++)
-        mem_free(f->levels[i]);
+    sums_finish(&f->sums);
     mem_free(f->open[0]);
     mem_free(f->open[1]);
     mem_free(f);
@@ -85,31 +85,41 @@ uint32_t film_tile_count(const struct film *f) {
 }
 
 uint64_t film_samples(const struct film *f) {
-    return f->blocks * FILM_BLOCK + f->open_samples;
+    return sums_samples(&f->sums) + f->open_samples;
+}
+
+uint64_t film_first(const struct film *f) {
+    return f->options.first;
+}
+
+uint64_t film_next(const struct film *f) {
+    return f->block * FILM_BLOCK + f->open_samples;
 }
 
 uint64_t film_rejected(const struct film *f) {
     return atomic_load(&f->rejected);
 }
 
-// Adds the finished block to the binary counter: equal levels add up, older sum first.
-static void carry_block(struct film *f) {
+// Moves the finished block to the sums and begins the next.
+static void finish_block(struct film *f) {
     const size_t n = film_values(f);
-    double *block = mem_array(n, sizeof *block);
-    memcpy(block, f->open[f->committed], n * sizeof *block);
-    int k = 0;
-    for (; f->levels[k]; k++) {
-        double *older = f->levels[k];
-        for (size_t i = 0; i < n; i++)
-            older[i] += block[i];
-        mem_free(block);
-        block = older;
-        f->levels[k] = NULL;
-    }
-    f->levels[k] = block;
-    f->blocks++;
-    f->open_samples = 0;
+    double *values = mem_array(n, sizeof *values);
+    memcpy(values, f->open[f->committed], n * sizeof *values);
+    sums_add(&f->sums, (struct sums_node){f->options.seed, 0, f->block, 0, values});
     memset(f->open[f->committed], 0, n * sizeof *f->open[0]);
+    f->open_samples = 0;
+    f->block++;
+}
+
+// Takes a short block back from the sums, to go on with it.
+static void reopen_block(struct film *f) {
+    struct sums_node node;
+    f->block = sums_next(&f->sums, f->options.seed, f->options.first) / FILM_BLOCK;
+    if (!sums_take_short(&f->sums, f->options.seed, &node))
+        return;
+    memcpy(f->open[f->committed], node.values, film_values(f) * sizeof *node.values);
+    f->open_samples = FILM_BLOCK - node.missing;
+    mem_free(node.values);
 }
 
 void film_commit(struct film *f, uint32_t samples) {
@@ -117,16 +127,25 @@ void film_commit(struct film *f, uint32_t samples) {
     f->open_samples += samples;
     assert(f->open_samples <= FILM_BLOCK);
     if (f->open_samples == FILM_BLOCK)
-        carry_block(f);
+        finish_block(f);
 }
 
-// Sum over all samples so far of one value of the film, in the order of the tree.
-static double film_total(const struct film *f, size_t i) {
-    double sum = f->open[f->committed][i];
-    for (int k = 0; k < MOST_LEVELS; k++)
-        if (f->levels[k])
-            sum = f->levels[k][i] + sum;
-    return sum;
+const struct sums *film_sums(const struct film *f) {
+    return &f->sums;
+}
+
+bool film_short_block(const struct film *f, struct sums_node *node) {
+    *node = (struct sums_node){f->options.seed, 0, f->block, FILM_BLOCK - f->open_samples,
+                               f->open[f->committed]};
+    return f->open_samples > 0;
+}
+
+void film_restore(struct film *f, struct sums *sums) {
+    assert(sums->values == film_values(f));
+    sums_finish(&f->sums);
+    f->sums = *sums;
+    sums_init(sums, film_values(f));
+    reopen_block(f);
 }
 
 void film_pixel(const struct film *f, int x, int y, double *sums) {
@@ -135,7 +154,12 @@ void film_pixel(const struct film *f, int x, int y, double *sums) {
     const size_t inside = (size_t)(y % FILM_TILE * FILM_TILE + x % FILM_TILE);
     const size_t first = tile * f->tile_values + inside * f->layout.channels;
     for (uint32_t c = 0; c < f->layout.channels; c++)
-        sums[c] = film_total(f, first + c);
+        sums[c] = sums_total(&f->sums, first + c, f->open[f->committed][first + c]);
+}
+
+uint64_t film_replicate_samples(const struct film *f, uint32_t replicate) {
+    return sums_samples_of_phase(&f->sums, FILM_REPLICATES, replicate) +
+           (f->open_samples + FILM_REPLICATES - 1 - replicate) / FILM_REPLICATES;
 }
 
 const struct film_layout *film_get_layout(const struct film *f) {

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The film: a sink that makes a picture, with its layers.
 //
-// Every sample belongs to one pixel. Samples are summed in order, in double, within blocks of 64;
-// blocks combine in the fixed binary tree of their indices. A pass of the driver adds samples
-// [a, b) of one block to every tile; it is committed as a whole, or never was, so all pixels always
-// have equal counts, and where passes begin and end does not change a bit.
+// Every sample belongs to one pixel, and is summed in the order of sums.h. A pass of the driver adds
+// samples [a, b) of one block to every tile; it is committed as a whole, or never was, so all pixels
+// always have equal counts, and where passes begin and end does not change a bit.
 #pragma once
 
 #include "image/image.h"
 #include "sink/sink.h"
+#include "sink/sums.h"
 
-enum { FILM_TILE = 32, FILM_BLOCK = 64, FILM_REPLICATES = 16, FILM_MOST_GROUPS = 64 };
+enum { FILM_TILE = 32, FILM_BLOCK = SUMS_BLOCK, FILM_REPLICATES = 16, FILM_MOST_GROUPS = 64 };
 
 enum film_aov {
     AOV_ALBEDO = 1,
@@ -25,6 +25,8 @@ enum film_aov {
 
 struct film_options {
     int x0, y0, x1, y1;   // pixels of the absolute grid to render, half-open
+    uint32_t seed;        // that the samples to come are drawn with
+    uint64_t first;       // the first of them: a multiple of FILM_BLOCK
     bool alpha;
     bool variance;        // squared standard errors of the pixels, from replicates
     bool moments;         // second moments of single samples, as layer "m2"
@@ -64,7 +66,17 @@ void film_view_close(struct film_view *v); // stores the tile's sums as part of 
 
 // The pass added `samples` samples to every tile; they must not cross a block.
 void film_commit(struct film *f, uint32_t samples);
-uint64_t film_samples(const struct film *f);
+uint64_t film_samples(const struct film *f); // of every pixel
+uint64_t film_first(const struct film *f);   // number of the first sample of this run
+uint64_t film_next(const struct film *f);    // number of the sample that comes next
+
+// Numbers a pixel's sums take in nodes, tile by tile.
+size_t film_values(const struct film *f);
+// The film goes on from these sums, which it takes over and leaves empty.
+void film_restore(struct film *f, struct sums *sums);
+const struct sums *film_sums(const struct film *f); // of finished blocks
+// The unfinished block as a node whose values stay the film's. false: it has no samples.
+bool film_short_block(const struct film *f, struct sums_node *node);
 
 // Samples whose value was NaN or infinite; they count as black.
 uint64_t film_rejected(const struct film *f);

@@ -16,15 +16,16 @@ static const char *const path_names[PATH_SLOTS] = {
     "indirect_glossy", "indirect_specular", "emission"};
 
 // Squared standard error of the mean from the means of the replicates that have samples.
-static void squared_error(const double *replicates, uint64_t samples, double error[3]) {
+static void squared_error(const struct film *f, const double *replicates, double error[3]) {
+    const uint64_t samples = film_samples(f);
     const uint64_t n = samples < FILM_REPLICATES ? samples : FILM_REPLICATES;
     for (int c = 0; c < 3; c++) {
         double mean = 0, spread = 0;
-        for (uint64_t r = 0; r < n; r++)
-            mean += replicates[3 * r + (uint64_t)c] / (double)samples;
-        for (uint64_t r = 0; r < n; r++) {
-            const uint64_t count = (samples - r + FILM_REPLICATES - 1) / FILM_REPLICATES;
-            const double d = replicates[3 * r + (uint64_t)c] / (double)count - mean;
+        for (uint32_t r = 0; r < n; r++)
+            mean += replicates[3 * r + (uint32_t)c] / (double)samples;
+        for (uint32_t r = 0; r < n; r++) {
+            const double count = (double)film_replicate_samples(f, r);
+            const double d = replicates[3 * r + (uint32_t)c] / count - mean;
             spread += d * d;
         }
         error[c] = n > 1 ? spread / (double)(n * (n - 1)) : 0;
@@ -59,7 +60,7 @@ double film_noise(const struct film *f) {
             double rgb[3], error[3];
             film_pixel(f, x, y, sums);
             pixel_colour(l, o, sums, 1.0 / (double)n, rgb);
-            squared_error(sums + l->replicate_channel, n, error);
+            squared_error(f, sums + l->replicate_channel, error);
             b[i] = (rgb[0] + rgb[1] + rgb[2]) / 3;
             e[i] = (error[0] + error[1] + error[2]) / 3;
             mean += b[i] / (double)pixels;
@@ -151,7 +152,7 @@ static void put_pixel(struct writer *w, const struct film *f, const double *sums
         put_rgb(w, "m2", sums + l->moment_channel, scale);
     if (l->replicate_channel != LAYOUT_NONE) {
         double error[3];
-        squared_error(sums + l->replicate_channel, n, error);
+        squared_error(f, sums + l->replicate_channel, error);
         put_rgb(w, "variance", error, 1);
     }
     if (l->aov_channel != LAYOUT_NONE)
