@@ -1,98 +1,158 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameter sets with which every material of the registry is tested, and the directions.
+//
+// A family of materials has its rows in property/bsdf_cases_FAMILY.inc; 20 sets a material are
+// required. A row with `draws` stands for that many sets drawn from the ranges in its text, its
+// children's included: "a=0..1" is uniform, "a=1e-3~1" uniform in the logarithm, "a=*" any of a
+// choice's or a switch's values; colours draw each channel.
 #pragma once
 
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
 #include "make_object.h"
+#include "math/hash.h"
 
 struct bsdf_case {
     const char *name;
     const char *overrides;
     const char *children[2]; // "NAME OVERRIDES"; NULL: none
-    float eta;               // index inside over outside where light crosses; 0: 1
+    float eta;               // index inside over outside where light crosses; 0: not checked
     float tolerance;         // relative, of pdf and weight between sample and eval; 0: 2e-3
+    int draws;               // 0: the row is one set as it stands
 };
 
-// A half vector found from two directions in single precision is wrong by about 1e-7 / cos: this
-// decides the tolerances of nearly smooth materials.
-static const struct bsdf_case bsdf_cases[] = {
-    {"diffuse", ""},
-    {"diffuse", "reflectance=1,0.5,0"},
-    {"conductor", ""},
-    {"conductor", "eta=0.2,0.9,1.1 k=3.9,2.4,2.1"},
-    {"roughconductor", "alpha=0.001 distribution=ggx", .tolerance = 0.2f},
-    {"roughconductor", "alpha=0.0002 distribution=beckmann", .tolerance = 1},
-    {"roughconductor", "alpha=0.00009"},
-    {"roughconductor", "alpha=0.02 distribution=beckmann", .tolerance = 0.02f},
-    {"roughconductor", "alpha=0.1 distribution=ggx eta=0.2,0.9,1.1 k=3.9,2.4,2.1"},
-    {"roughconductor", "alpha=0.1 distribution=beckmann"},
-    {"roughconductor", "alpha=0.5 distribution=ggx"},
-    {"roughconductor", "alpha=0.5 distribution=beckmann"},
-    {"roughconductor", "alpha=1 distribution=ggx specular_reflectance=0.9,0.5,0.1"},
-    {"roughconductor", "alpha=1 distribution=beckmann"},
-    {"roughconductor", "alpha_u=0.05 alpha_v=0.4 distribution=ggx"},
-    {"roughconductor", "alpha_u=0.3 alpha_v=0.05 distribution=beckmann"},
-    {"roughconductor", "alpha_u=0.03 alpha_v=0.8 distribution=ggx", .tolerance = 0.02f},
-    {"dielectric", "", .eta = 1.5046f / 1.000277f},
-    {"dielectric", "int_ior=1 ext_ior=1"},
-    {"dielectric", "int_ior=1 ext_ior=1.8", .eta = 1 / 1.8f},
-    {"thindielectric", ""},
-    {"thindielectric", "int_ior=1 ext_ior=1"},
-    {"roughdielectric", "alpha=0.02", .eta = 1.5046f / 1.000277f, .tolerance = 0.02f},
-    {"roughdielectric", "alpha=0.1 distribution=ggx", .eta = 1.5046f / 1.000277f,
-     .tolerance = 0.02f},
-    {"roughdielectric", "alpha=0.5", .eta = 1.5046f / 1.000277f, .tolerance = 0.02f},
-    {"roughdielectric", "alpha=1 distribution=ggx", .eta = 1.5046f / 1.000277f, .tolerance = 0.02f},
-    {"roughdielectric", "alpha_u=0.4 alpha_v=0.1 distribution=ggx int_ior=1 ext_ior=1.5",
-     .eta = 1 / 1.5f, .tolerance = 0.02f},
-    {"roughdielectric", "alpha=0.3 distribution=ggx int_ior=2.4 ext_ior=1", .eta = 2.4f,
-     .tolerance = 0.02f},
-    {"roughdielectric", "alpha=0.2 distribution=ggx int_ior=1.05 ext_ior=1", .eta = 1.05f,
-     .tolerance = 0.02f},
-    {"roughdielectric", "alpha=0.2 int_ior=1.3 ext_ior=1.3"},
-    {"plastic", ""},
-    {"plastic", "diffuse_reflectance=0.9,0.5,0.1 nonlinear=true int_ior=1.9"},
-    {"plastic", "diffuse_reflectance=1"},
-    {"plastic", "diffuse_reflectance=0"},
-    {"roughplastic", "alpha=0.01 distribution=ggx", .tolerance = 0.02f},
-    {"roughplastic", "alpha=0.1"},
-    {"roughplastic", "alpha=0.3 distribution=ggx diffuse_reflectance=0.9,0.5,0.1 nonlinear=true"},
-    {"roughplastic", "alpha=1 distribution=ggx"},
-    {"roughplastic", "alpha=0.00005"},
-    {"twosided", "", {"diffuse reflectance=0.8"}},
-    {"twosided", "", {"roughconductor alpha=0.2", "plastic"}},
-    {"mask", "opacity=0.3", {"diffuse"}},
-    {"mask", "opacity=0.6", {"roughdielectric alpha=0.3"}, .eta = 1.5046f / 1.000277f},
-    {"mask", "opacity=0", {"diffuse"}},
-    {"mask", "opacity=1", {"plastic"}},
-    {"blendbsdf", "weight=0.3", {"diffuse", "roughconductor alpha=0.1"}},
-    {"blendbsdf", "weight=0.7", {"plastic", "dielectric"}, .eta = 1.5046f / 1.000277f},
-    {"blendbsdf", "weight=0.5", {"roughplastic alpha=0.2", "null"}},
-    {"bumpmap", "texture=0", {"diffuse"}},
-    {"normalmap", "normalmap=0.7,0.4,0.9", {"roughconductor alpha=0.3 distribution=ggx"}},
-    {"normalmap", "normalmap=0.9,0.5,0.6", {"diffuse"}},
-    {"normalmap", "normalmap=0.6,0.6,0.9 use_shadowing_function=false",
-     {"roughdielectric alpha=0.3"}, .eta = 1.5046f / 1.000277f},
-    {"null", ""},
+static const struct bsdf_case bsdf_rows[] = {
+#include "property/bsdf_cases_standard.inc"
 };
 
-enum { BSDF_CASES = sizeof bsdf_cases / sizeof *bsdf_cases, BSDF_DIRECTIONS = 20 };
+enum { BSDF_ROWS = sizeof bsdf_rows / sizeof *bsdf_rows, BSDF_DIRECTIONS = 20, BSDF_SETS = 20 };
 
-static inline struct object *bsdf_case_child(struct arena *arena, const char *text) {
-    char name[64];
-    size_t n = 0;
-    while (text[n] && text[n] != ' ' && n + 1 < sizeof name)
+static inline int bsdf_row_sets(int row) {
+    return bsdf_rows[row].draws ? bsdf_rows[row].draws : 1;
+}
+
+// Number of sets of that material, of all materials for NULL.
+static inline int bsdf_set_count(const char *name) {
+    int n = 0;
+    for (int i = 0; i < BSDF_ROWS; i++)
+        if (!name || strcmp(bsdf_rows[i].name, name) == 0)
+            n += bsdf_row_sets(i);
+    return n;
+}
+
+// One number of a range "LOW..HIGH" or "LOW~HIGH"; anything else stands as it is.
+static inline void bsdf_draw_number(struct rng *rng, const char *range, char *out, size_t size) {
+    char *end;
+    const double low = strtod(range, &end);
+    const bool even = strncmp(end, "..", 2) == 0, logarithmic = *end == '~';
+    if (!even && !logarithmic) {
+        snprintf(out, size, "%s", range);
+        return;
+    }
+    const double high = strtod(end + (even ? 2 : 1), NULL), u = rng_float(rng);
+    snprintf(out, size, "%.5g", even ? low + u * (high - low) : low * pow(high / low, u));
+}
+
+static inline void bsdf_draw_choice(struct rng *rng, const struct param *p, char *out,
+                                    size_t size) {
+    static const char *const switches[] = {"false", "true", NULL};
+    const char *const *choices = p->type == PARAM_CHOICE ? p->choices : switches;
+    uint32_t n = 0;
+    while (choices[n])
         n++;
-    for (size_t i = 0; i < n; i++)
-        name[i] = text[i];
-    name[n] = '\0';
-    return make_bsdf(arena, name, text + n, NULL);
+    snprintf(out, size, "%s", choices[rng_u32(rng) % n]);
+}
+
+static inline bool bsdf_param_has_channels(const struct param *p) {
+    return p->type == PARAM_REFLECTANCE || p->type == PARAM_INDEX || p->type == PARAM_TEXTURE;
+}
+
+static inline void bsdf_draw_value(struct rng *rng, const struct param *p, const char *value,
+                                   char *out, size_t size) {
+    if (strcmp(value, "*") == 0) {
+        bsdf_draw_choice(rng, p, out, size);
+        return;
+    }
+    bsdf_draw_number(rng, value, out, size);
+    for (int i = 1; i < 3 && strcmp(out, value) != 0 && bsdf_param_has_channels(p); i++) {
+        const size_t n = strlen(out);
+        out[n] = ',';
+        bsdf_draw_number(rng, value, out + n + 1, size - n - 1);
+    }
+}
+
+// The text of overrides with every range replaced by a number of it; memory is the arena's.
+static inline const char *bsdf_draw_text(struct arena *arena, struct rng *rng, const char *name,
+                                         const char *text) {
+    char out[1000] = "", *words = arena_strdup(arena, text), *state;
+    for (char *w = strtok_r(words, " ", &state); w; w = strtok_r(NULL, " ", &state)) {
+        char number[200], *value = strchr(w, '=');
+        const size_t n = strlen(out);
+        *value++ = '\0';
+        const struct param *p = param_find(registry_find(&bsdfs, name), w);
+        if (!p) {
+            printf("%s has no parameter \"%s\"\n", name, w);
+            exit(1);
+        }
+        bsdf_draw_value(rng, p, value, number, sizeof number);
+        snprintf(out + n, sizeof out - n, "%s%s=%s", n ? " " : "", w, number);
+    }
+    return arena_strdup(arena, out);
+}
+
+static inline void bsdf_first_word(const char *text, char *word, size_t size) {
+    size_t n = 0;
+    while (text[n] && text[n] != ' ' && n + 1 < size) {
+        word[n] = text[n];
+        n++;
+    }
+    word[n] = '\0';
+}
+
+// The set of that number of a row, its ranges drawn; each row has its own random numbers, so that
+// it stays the same whatever rows are added elsewhere.
+static inline struct bsdf_case bsdf_case_at(struct arena *arena, int row, int set) {
+    struct bsdf_case c = bsdf_rows[row];
+    struct rng rng = {(uint64_t)set};
+    if (!c.draws)
+        return c;
+    for (const char *s = c.overrides; *s; s++)
+        rng.state = hash_u64(rng.state + (unsigned char)*s);
+    c.overrides = bsdf_draw_text(arena, &rng, c.name, c.overrides);
+    for (int i = 0; i < 2 && c.children[i]; i++) {
+        char name[64];
+        bsdf_first_word(c.children[i], name, sizeof name);
+        c.children[i] = arena_printf(
+            arena, "%s %s", name,
+            bsdf_draw_text(arena, &rng, name, c.children[i] + strlen(name)));
+    }
+    return c;
 }
 
 static inline struct object *bsdf_case_make(struct arena *arena, const struct bsdf_case *c) {
     const struct object *children[3] = {NULL, NULL, NULL};
-    for (int i = 0; i < 2 && c->children[i]; i++)
-        children[i] = bsdf_case_child(arena, c->children[i]);
+    for (int i = 0; i < 2 && c->children[i]; i++) {
+        char name[64];
+        bsdf_first_word(c->children[i], name, sizeof name);
+        children[i] = make_bsdf(arena, name, c->children[i] + strlen(name), NULL);
+    }
     return make_bsdf(arena, c->name, c->overrides, children);
+}
+
+static inline void bsdf_case_print(const struct bsdf_case *c) {
+    printf("%s %s", c->name, c->overrides);
+    for (int i = 0; i < 2 && c->children[i]; i++)
+        printf(" (%s)", c->children[i]);
+}
+
+// Whether a material is meant by the program's arguments: all are when there are none.
+static inline bool bsdf_is_asked(int argc, char **argv, const char *name) {
+    bool asked = argc < 2;
+    for (int i = 1; i < argc; i++)
+        asked = asked || strcmp(argv[i], name) == 0;
+    return asked;
 }
 
 // Ten angles from 1 to 89 degrees on either side of the surface, in various azimuths.
