@@ -36,12 +36,12 @@ static bool prepare(struct object *self, struct integrator_wants *wants) {
 }
 
 static void sample_light(const struct direct *d, struct trace_context *ctx, int lane,
-                         const struct surface *s, const struct closure *closure, spectrum beta,
-                         struct sampler *sampler) {
+                         const struct surface *s, const struct closure *closure, vec3 side,
+                         spectrum beta, struct sampler *sampler) {
     struct shadow_test test;
     const float rivals = (float)d->bsdf_samples / (float)d->emitter_samples;
     const float u = sampler_1d(sampler);
-    vertex_sample_light(ctx, s, closure, u, sampler_2d(sampler), rivals, &test);
+    vertex_sample_light(ctx, s, closure, side, u, sampler_2d(sampler), rivals, &test);
     if (!test.pending)
         return;
     test.contribution.weight *= beta / (float)d->emitter_samples;
@@ -52,8 +52,8 @@ static void sample_light(const struct direct *d, struct trace_context *ctx, int 
 
 // Follows a sampled direction to the lights on it, straight through whatever lets light pass.
 static void sample_material(const struct direct *d, struct trace_context *ctx, int lane,
-                            const struct surface *s, const struct closure *closure, spectrum beta,
-                            struct sampler *sampler) {
+                            const struct surface *s, const struct closure *closure, vec3 side,
+                            spectrum beta, struct sampler *sampler) {
     struct bsdf_sample b;
     const float u = sampler_1d(sampler);
     if (!closure_sample(closure, u, sampler_2d(sampler), &b) || b.lobe & LOBE_NULL)
@@ -62,7 +62,8 @@ static void sample_material(const struct direct *d, struct trace_context *ctx, i
     // Scaling the density by the ratio of counts makes the two-sample heuristic the counted one.
     const float ratio = (float)d->bsdf_samples / (float)(d->emitter_samples ? d->emitter_samples : 1);
     const struct path_origin from = {s->p, b.pdf_sa * ratio,
-                                     b.lobe & LOBE_DELTA || d->emitter_samples == 0, 1, b.lobe};
+                                     b.lobe & LOBE_DELTA || d->emitter_samples == 0, 1, b.lobe,
+                                     side};
     struct ray ray = {surface_offset(s, wi), wi, 0, INFINITY};
     beta *= b.weight / (float)d->bsdf_samples;
     for (int i = 0; i < 64 && !spectrum_is_black(beta); i++) {
@@ -121,10 +122,11 @@ static void trace_one(const struct direct *d, struct trace_context *ctx, int lan
         const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
         if (ctx->sink->wants_surface)
             vertex_add_first(ctx, lane, &s, closure);
+        const vec3 side = closure ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);
         for (int i = 0; closure && closure->lobes & LOBE_SMOOTH && i < d->emitter_samples; i++)
-            sample_light(d, ctx, lane, &s, closure, beta, &sampler);
+            sample_light(d, ctx, lane, &s, closure, side, beta, &sampler);
         for (int i = 0; closure && i < d->bsdf_samples; i++)
-            sample_material(d, ctx, lane, &s, closure, beta, &sampler);
+            sample_material(d, ctx, lane, &s, closure, side, beta, &sampler);
         return;
     }
     ctx->truncated++;

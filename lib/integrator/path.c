@@ -97,7 +97,7 @@ static void pass_through(struct lane *l, const struct surface *s, const struct b
 }
 
 // Continues the path along a sampled direction, or ends it.
-static void scatter(const struct path *p, struct lane *l, const struct surface *s,
+static void scatter(const struct path *p, struct lane *l, const struct surface *s, vec3 side,
                     const struct bsdf_sample *b) {
     const vec3 wi = to_world(&s->point.frame, b->wi);
     if (p->strict_normals && !same_side(s, wi, b->wi)) {
@@ -108,7 +108,7 @@ static void scatter(const struct path *p, struct lane *l, const struct surface *
     l->eta2 *= b->eta * b->eta;
     const uint32_t first_lobe = l->from.depth == 0 ? b->lobe : l->from.lobe;
     l->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, l->from.depth + 1,
-                                   first_lobe};
+                                   first_lobe, side};
     l->ray = (struct ray){surface_offset(s, wi), wi, 0, INFINITY};
     l->alive = !spectrum_is_black(l->beta);
     if (l->alive)
@@ -117,10 +117,10 @@ static void scatter(const struct path *p, struct lane *l, const struct surface *
 
 // Next event estimation: leaves a shadow test pending.
 static void sample_light(const struct path *p, struct trace_context *ctx, struct lane *l,
-                         const struct surface *s, const struct closure *closure) {
-    const float choice = ctx->world->light_count > 1 ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
+                         const struct surface *s, const struct closure *closure, vec3 side) {
+    const float choice = ctx->world->choice.draws ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
     const struct vec2 point = sampler_2d(draw(l, DRAW_LIGHT_POINT));
-    vertex_sample_light(ctx, s, closure, choice, point, 1, &l->shadow);
+    vertex_sample_light(ctx, s, closure, side, choice, point, 1, &l->shadow);
     struct contribution *c = &l->shadow.contribution;
     if (!l->shadow.pending)
         return;
@@ -145,8 +145,9 @@ static void shade(const struct path *p, struct trace_context *ctx, int i, struct
     const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
     const bool goes_on = closure && may_contribute(p, l->events + 1) &&
                          (!p->strict_normals || same_side(&s, -l->ray.d, wo));
+    const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);
     if (goes_on && closure->lobes & LOBE_SMOOTH)
-        sample_light(p, ctx, l, &s, closure);
+        sample_light(p, ctx, l, &s, closure, side);
     l->alive = false;
     if (goes_on) {
         const float lobe = sampler_1d(draw(l, DRAW_LOBE));
@@ -157,7 +158,7 @@ static void shade(const struct path *p, struct trace_context *ctx, int i, struct
     if (l->alive && b.lobe & LOBE_NULL)
         pass_through(l, &s, &b);
     else if (l->alive)
-        scatter(p, l, &s, &b);
+        scatter(p, l, &s, side, &b);
     if (++l->events >= INTEGRATOR_MOST_EVENTS && l->alive) {
         l->alive = false;
         ctx->truncated++;

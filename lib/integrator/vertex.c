@@ -7,6 +7,7 @@ void vertex_add_emission(struct trace_context *ctx, int lane, const struct surfa
     if (index == SCENE_NONE)
         return;
     const struct world_light *light = &ctx->world->lights[index];
+    const struct light_place place = {from->p, from->n};
     const vec3 to_light = s->p - from->p;
     const struct light_hit hit = {d, length(to_light), s->ng, s->point.at};
     const spectrum emission = light->type->emission(light->data, &hit);
@@ -14,7 +15,7 @@ void vertex_add_emission(struct trace_context *ctx, int lane, const struct surfa
         return;
     float mis = 1;
     if (!from->delta)
-        mis = mis_weight(from->pdf_sa, light->pmf * light->type->pdf_sa(light->data, from->p, &hit));
+        mis = mis_weight(from->pdf_sa, world_light_pdf_sa(ctx->world, index, &place, &hit));
     sink_add(ctx->sink, lane,
              &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, d});
 }
@@ -22,38 +23,35 @@ void vertex_add_emission(struct trace_context *ctx, int lane, const struct surfa
 void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum beta,
                          const struct path_origin *from) {
     const struct light_hit hit = {.wi = d, .distance = INFINITY};
+    const struct light_place place = {from->p, from->n};
     for (uint32_t i = 0; i < ctx->world->infinite_count; i++) {
         const uint32_t index = ctx->world->infinite[i];
         const struct world_light *light = &ctx->world->lights[index];
         const spectrum emission = light->type->emission(light->data, &hit);
         float mis = 1;
         if (!from->delta)
-            mis = mis_weight(from->pdf_sa,
-                             light->pmf * light->type->pdf_sa(light->data, from->p, &hit));
+            mis = mis_weight(from->pdf_sa, world_light_pdf_sa(ctx->world, index, &place, &hit));
         sink_add(ctx->sink, lane,
                  &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, d});
     }
 }
 
 void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
-                         const struct closure *closure, float u1, struct vec2 u2, float rivals,
-                         struct shadow_test *test) {
+                         const struct closure *closure, vec3 side, float u1, struct vec2 u2,
+                         float rivals, struct shadow_test *test) {
+    const struct light_place place = {s->p, side};
     test->pending = false;
     test->most_passes = -1;
-    float pmf, pdf_bsdf;
-    const uint32_t index = world_choose_light(ctx->world, u1, &pmf);
-    if (index == SCENE_NONE)
-        return;
-    const struct world_light *light = &ctx->world->lights[index];
+    float pdf_bsdf;
+    uint32_t index;
     struct light_sample l;
-    if (!light->type->sample(light->data, s->p, u2, &l))
+    if (!world_sample_light(ctx->world, &place, u1, u2, &index, &l))
         return;
     const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf_bsdf);
     if (spectrum_is_black(f) || spectrum_is_black(l.emission))
         return;
-    const float pdf = pmf * l.pdf_sa;
-    const float share = l.delta ? 1 : mis_weight(pdf, rivals * pdf_bsdf);
-    test->contribution = (struct contribution){.weight = f * (share / pdf), .emission = l.emission,
+    const float share = l.delta ? 1 : mis_weight(l.pdf_sa, rivals * pdf_bsdf);
+    test->contribution = (struct contribution){.weight = f * (share / l.pdf_sa), .emission = l.emission,
                                                .source = index, .wi = l.wi};
     test->ray = world_shadow_ray(s, &l);
     test->pending = true;

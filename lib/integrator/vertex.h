@@ -19,7 +19,17 @@ struct path_origin {
     bool delta;       // no light sampling could have found this light
     uint32_t depth;   // scattering events so far
     uint32_t lobe;    // of the first event
+    vec3 n;           // as vertex_light_side gave it for the light sampling there
 };
+
+// The normal by which lights are chosen at a vertex, turned to the side of wo (local); zero where
+// light passes through, or where there is no surface: lights on all sides are then alike.
+static inline vec3 vertex_light_side(const struct surface *s, const struct closure *closure,
+                                     vec3 wo) {
+    if (closure->lobes & LOBE_TRANSMISSION)
+        return v3(0, 0, 0);
+    return cos_theta(wo) < 0 ? -s->point.frame.n : s->point.frame.n;
+}
 
 // Hands out the emission of the surface that was hit, if it is a light's.
 void vertex_add_emission(struct trace_context *ctx, int lane, const struct surface *s, vec3 d,
@@ -37,10 +47,11 @@ struct shadow_test {
 };
 
 // Samples one light from a surface: fills the test, or leaves it not pending. `rivals` is how many
-// material samples there are for each light sample, for MIS; 0: none, and for delta lights.
+// material samples there are for each light sample, for MIS; 0: none, and for delta lights. `side`
+// as vertex_light_side gives it. u1 is needed only where world->choice.draws.
 void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
-                         const struct closure *closure, float u1, struct vec2 u2, float rivals,
-                         struct shadow_test *test);
+                         const struct closure *closure, vec3 side, float u1, struct vec2 u2,
+                         float rivals, struct shadow_test *test);
 
 // Runs the shadow ray of a pending test and hands out what comes through.
 void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test *test);

@@ -2,6 +2,8 @@
 // A shape that emits the same radiance in all directions on the side of its normal.
 #include "light/area_shape.h"
 
+#include <float.h>
+
 struct area {
     struct texture_ref radiance;
     // made by prepare
@@ -63,6 +65,56 @@ static float power(const void *data) {
     return PI * area * spectrum_luminance(texture_mean(&a->radiance));
 }
 
+// ---- for the light tree
+
+static uint32_t parts(const void *data) {
+    const struct area *a = data;
+    return a->is_mesh ? area_mesh_parts(&a->mesh) : 1;
+}
+
+static bool part_sample(const void *data, uint32_t part, vec3 p, struct vec2 u,
+                        struct light_sample *s) {
+    const struct area *a = data;
+    struct texture_point at = {0};
+    if (!area_mesh_part_sample(&a->mesh, part, p, u, s, a->radiance.texture ? &at : NULL))
+        return false;
+    s->delta = false;
+    s->emission = texture_eval(&a->radiance, &at);
+    return true;
+}
+
+static float part_pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
+    (void)p;
+    return area_mesh_part_pdf_sa(&((const struct area *)data)->mesh, hit);
+}
+
+// Mean luminance of the radiance over a triangle, from a few places. What lies between them may be
+// brighter: a share of the mean over the whole texture stays.
+static float part_radiance(const struct area *a, uint32_t part) {
+    enum { PLACES = 16 };
+    const float whole = spectrum_luminance(texture_mean(&a->radiance));
+    if (!a->radiance.texture || !a->is_mesh || area_mesh_parts(&a->mesh) == 1)
+        return a->radiance.texture ? maxf(whole, 1e-3f) : whole;
+    float sum = 0;
+    for (int i = 0; i < PLACES; i++) {
+        struct texture_point at;
+        const float x = ((float)(i % 4) + 0.5f) / 4, y = ((float)(i / 4) + 0.5f) / 4;
+        const float r = sqrtf(x);
+        area_mesh_place(&a->mesh, part, (struct vec2){1 - r, r * y}, &at);
+        sum += maxf(spectrum_luminance(texture_eval(&a->radiance, &at)), 0) / PLACES;
+    }
+    return maxf(sum, whole > 0 ? 0.05f * whole : 1e-3f);
+}
+
+static void bounds(const void *data, uint32_t part, struct light_bounds *b) {
+    const struct area *a = data;
+    if (a->is_mesh)
+        area_mesh_bounds(&a->mesh, part, b);
+    else
+        area_quadric_bounds(&a->quadric, b);
+    b->intensity = minf(b->intensity * part_radiance(a, part), FLT_MAX);
+}
+
 static void finish(void *data) {
     struct area *a = data;
     if (a->is_mesh)
@@ -73,5 +125,6 @@ const struct light_type light_area = {
     .entry = {.name = "area", .help = "emitting surface", .params = params,
               .size = sizeof(struct area)},
     .prepare = prepare, .sample = sample, .emission = emission, .pdf_sa = pdf_sa, .power = power,
+    .bounds = bounds, .parts = parts, .part_sample = part_sample, .part_pdf_sa = part_pdf_sa,
     .finish = finish,
 };

@@ -200,6 +200,44 @@ bool area_mesh_faces(const struct area_mesh *a, const struct light_hit *hit) {
     return front != opposes_normals(a->mesh, hit->at.triangle, n);
 }
 
+// ---- single triangles, for the light tree
+
+uint32_t area_mesh_parts(const struct area_mesh *a) {
+    return a->kind == POLYGON_MESH ? a->mesh->triangle_count : 1;
+}
+
+void area_mesh_place(const struct area_mesh *a, uint32_t triangle, struct vec2 b,
+                     struct texture_point *at) {
+    fill_texture_point(a->mesh, triangle, b, at);
+}
+
+bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle, vec3 p, struct vec2 u,
+                           struct light_sample *s, struct texture_point *at) {
+    place_on_triangle(a, triangle, warp_triangle(u), s, at);
+    return area_finish_sample(p, (float)(1 / triangle_area(a->mesh, triangle)), s);
+}
+
+float area_mesh_part_pdf_sa(const struct area_mesh *a, const struct light_hit *hit) {
+    return area_to_solid_angle((float)(1 / triangle_area(a->mesh, hit->at.triangle)), hit->distance,
+                               fabsf(dot(hit->ng, hit->wi)));
+}
+
+void area_mesh_bounds(const struct area_mesh *a, uint32_t part, struct light_bounds *b) {
+    const uint32_t end = a->kind == POLYGON_MESH ? part + 1 : a->mesh->triangle_count;
+    double area = 0;
+    *b = (struct light_bounds){.min = vertex(a->mesh, part, 0), .max = vertex(a->mesh, part, 0),
+                               .axis = emitting_normal(a, part), .cos_o = 1};
+    for (uint32_t i = part; i < end; i++) {
+        area += triangle_area(a->mesh, i);
+        for (uint32_t k = 0; k < 3; k++) {
+            const vec3 v = vertex(a->mesh, i, k);
+            b->min = v3(minf(b->min[0], v[0]), minf(b->min[1], v[1]), minf(b->min[2], v[2]));
+            b->max = v3(maxf(b->max[0], v[0]), maxf(b->max[1], v[1]), maxf(b->max[2], v[2]));
+        }
+    }
+    b->intensity = length2(b->axis) > 0 ? (float)area : 0;
+}
+
 bool area_finish_sample(vec3 p, float pdf_area, struct light_sample *s) {
     const vec3 d = s->p - p;
     s->distance = length(d);

@@ -77,6 +77,24 @@ bool area_quadric_init(struct area_quadric *q, const struct shape *shape) {
     return q->area > 0 && q->area < INFINITY;
 }
 
+// A flat disk shows its whole area along its normal; the others, convex, a quarter in the mean.
+void area_quadric_bounds(const struct area_quadric *q, struct light_bounds *b) {
+    const struct affine *m = &q->to_world;
+    const bool flat = q->kind == SHAPE_DISK, tube = q->kind == SHAPE_CYLINDER;
+    const vec3 middle = m->o + (tube ? 0.5f * m->z : v3(0, 0, 0));
+    const vec3 across = m->x * m->x + m->y * m->y;
+    vec3 half = v3(sqrtf(across[0]), sqrtf(across[1]), sqrtf(across[2]));
+    if (tube)
+        half += 0.5f * v3(fabsf(m->z[0]), fabsf(m->z[1]), fabsf(m->z[2]));
+    else if (!flat)
+        for (int i = 0; i < 3; i++)
+            half[i] = sqrtf(across[i] + m->z[i] * m->z[i]);
+    *b = (struct light_bounds){
+        .min = middle - half, .max = middle + half, .cos_o = flat ? 1 : -1,
+        .axis = flat ? world_normal(q, v3(0, 0, 1)) : v3(0, 0, 1),
+        .intensity = flat ? q->area : 0.25f * q->area};
+}
+
 static void fill_texture_point(const struct area_quadric *q, vec3 object,
                                struct texture_point *at) {
     const double p[3] = {object[0], object[1], object[2]};

@@ -32,6 +32,16 @@ void area_mesh_finish(struct area_mesh *a);
 bool area_mesh_sample(const struct area_mesh *a, vec3 p, struct vec2 u, struct light_sample *s,
                       struct texture_point *at);
 float area_mesh_pdf_sa(const struct area_mesh *a, vec3 p, const struct light_hit *hit);
+// Single triangles of a POLYGON_MESH, as above; a hit's is hit->at.triangle.
+uint32_t area_mesh_parts(const struct area_mesh *a);
+bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle, vec3 p, struct vec2 u,
+                           struct light_sample *s, struct texture_point *at);
+float area_mesh_part_pdf_sa(const struct area_mesh *a, const struct light_hit *hit);
+// For radiance 1; the intensity of a triangle without area is 0.
+void area_mesh_bounds(const struct area_mesh *a, uint32_t part, struct light_bounds *b);
+// Places that sample a triangle's texture, in barycentric coordinates.
+void area_mesh_place(const struct area_mesh *a, uint32_t triangle, struct vec2 b,
+                     struct texture_point *at);
 // Whether a ray in direction wi meets the emitting side.
 bool area_mesh_faces(const struct area_mesh *a, const struct light_hit *hit);
 
@@ -50,6 +60,9 @@ bool area_quadric_init(struct area_quadric *q, const struct shape *shape);
 bool area_quadric_sample(const struct area_quadric *q, vec3 p, struct vec2 u,
                          struct light_sample *s, struct texture_point *at);
 float area_quadric_pdf_sa(const struct area_quadric *q, vec3 p, const struct light_hit *hit);
+
+// For radiance 1.
+void area_quadric_bounds(const struct area_quadric *q, struct light_bounds *b);
 
 // From a density per area to one per solid angle; 0 where that is not finite.
 static inline float area_to_solid_angle(float pdf_area, float distance, float cos_light) {

@@ -23,6 +23,11 @@ vec3 light_position(const struct transform *to_world, vec3 local, const struct l
               (float)(p[2] - scene->origin[2]));
 }
 
+struct light_bounds light_bounds_of_point(vec3 p, spectrum intensity) {
+    return (struct light_bounds){.min = p, .max = p, .axis = v3(0, 0, 1), .cos_o = -1, .cos_e = 0,
+                                 .intensity = minf(spectrum_luminance(intensity), FLT_MAX)};
+}
+
 bool light_sample_point(vec3 position, vec3 p, spectrum intensity, struct light_sample *s) {
     const vec3 d = position - p;
     const float distance = length(d);

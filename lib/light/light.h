@@ -8,6 +8,7 @@
 #pragma once
 
 #include "base/registry.h"
+#include "light/light_tree.h"
 #include "math/ray.h"
 #include "math/transform.h"
 #include "math/vec.h"
@@ -54,6 +55,15 @@ struct light_type {
     float (*pdf_sa)(const void *data, vec3 p, const struct light_hit *hit);
     // Mean emitted power in W (luminance), an estimate for choosing lights.
     float (*power)(const void *data);
+    // Where a part stands and whither it shines, for choosing lights by the place they light. A
+    // light of several parts (the triangles of a mesh) can be sampled by part: part_sample and
+    // part_pdf_sa are then sample and pdf_sa of one; that of a hit is hit->at.triangle. NULL parts:
+    // one. NULL bounds: it has no place.
+    void (*bounds)(const void *data, uint32_t part, struct light_bounds *b);
+    uint32_t (*parts)(const void *data);
+    bool (*part_sample)(const void *data, uint32_t part, vec3 p, struct vec2 u,
+                        struct light_sample *s);
+    float (*part_pdf_sa)(const void *data, vec3 p, const struct light_hit *hit);
     void (*finish)(void *data); // NULL: nothing to do
 };
 
@@ -77,6 +87,8 @@ static inline const struct light_type *light_type_of(const struct object *o) {
 float light_power_infinite(float mean_radiance, float radius);
 // A point given in the light's space, in recentred world space.
 vec3 light_position(const struct transform *to_world, vec3 local, const struct light_scene *scene);
+// Bounds of a light at one point that shines alike in all directions.
+struct light_bounds light_bounds_of_point(vec3 p, spectrum intensity);
 // Fills s for a delta light at `position` that sends `intensity` towards p. false: at p itself.
 bool light_sample_point(vec3 position, vec3 p, spectrum intensity, struct light_sample *s);
 // Rotation of infinite lights: unit axes (a mirror and a common scale are fine; the scale is

@@ -38,9 +38,15 @@ static float power(const void *data) {
     return 4 * PI * spectrum_luminance(((const struct point *)data)->intensity);
 }
 
+static void bounds(const void *data, uint32_t part, struct light_bounds *b) {
+    const struct point *d = data;
+    (void)part;
+    *b = light_bounds_of_point(d->p, d->intensity);
+}
+
 const struct light_type light_point = {
     .entry = {.name = "point", .help = "point light", .params = params,
               .size = sizeof(struct point)},
     .delta = true,
-    .prepare = prepare, .sample = sample, .power = power,
+    .prepare = prepare, .sample = sample, .power = power, .bounds = bounds,
 };

@@ -92,9 +92,28 @@ static float power(const void *data) {
            spectrum_luminance(d->intensity * texture_mean(&d->texture));
 }
 
+static bool keeps_angles(const struct affine *m) {
+    const float l = length2(m->x), tolerance = 1e-5f;
+    return fabsf(length2(m->y) - l) <= tolerance * l && fabsf(length2(m->z) - l) <= tolerance * l &&
+           fabsf(dot(m->x, m->y)) <= tolerance * l && fabsf(dot(m->y, m->z)) <= tolerance * l &&
+           fabsf(dot(m->z, m->x)) <= tolerance * l;
+}
+
+static void bounds(const void *data, uint32_t part, struct light_bounds *b) {
+    const struct spot *d = data;
+    const struct affine world = affine_from(&d->to_world);
+    (void)part;
+    *b = light_bounds_of_point(d->p, d->intensity * texture_mean(&d->texture));
+    if (!keeps_angles(&world))
+        return; // a skewed cone: all directions
+    b->axis = normalize(world.z);
+    b->cos_o = d->cos_cutoff;
+    b->cos_e = 0.99f; // nothing beyond, but for rounding
+}
+
 const struct light_type light_spot = {
     .entry = {.name = "spot", .help = "spot light with a linear falloff", .params = params,
               .size = sizeof(struct spot)},
     .delta = true,
-    .prepare = prepare, .sample = sample, .power = power,
+    .prepare = prepare, .sample = sample, .power = power, .bounds = bounds,
 };

@@ -97,3 +97,13 @@ uint32_t alias_sample(const struct alias_table *a, float u, float *pmf, float *r
         *remapped = minf(t, ONE_MINUS);
     return i;
 }
+
+uint32_t alias_sample_fine(const struct alias_table *a, double u, float *pmf) {
+    const double x = u * a->count;
+    uint32_t i = (uint32_t)x;
+    i = i < a->count ? i : a->count - 1;
+    if (x - i >= (double)a->entries[i].threshold)
+        i = a->entries[i].other;
+    *pmf = a->entries[i].pmf;
+    return i;
+}

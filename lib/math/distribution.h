@@ -37,3 +37,5 @@ struct alias_table {
 void alias_init(struct alias_table *a, const float *weights, uint32_t count);
 void alias_finish(struct alias_table *a);
 uint32_t alias_sample(const struct alias_table *a, float u, float *pmf, float *remapped);
+// For tables whose entries are too many for the 24 bits of a float.
+uint32_t alias_sample_fine(const struct alias_table *a, double u, float *pmf);

@@ -46,24 +46,6 @@ static bool prepare_bsdfs(struct world *w, struct scene *s) {
     return true;
 }
 
-// Half of the choice is uniform: power alone can starve a weak light that stands near.
-static void init_choice(struct world *w) {
-    float *weights = mem_array(w->light_count, sizeof *weights);
-    double total = 0;
-    for (uint32_t i = 0; i < w->light_count; i++) {
-        const float power = w->lights[i].type->power(w->lights[i].data);
-        weights[i] = power > 0 ? minf(power, 1e30f) : 0;
-        total += (double)weights[i];
-    }
-    const double uniform = total > 0 ? total / w->light_count : 1;
-    for (uint32_t i = 0; i < w->light_count; i++)
-        weights[i] = (float)(((double)weights[i] + uniform) / (total > 0 ? 2 * total : 1));
-    alias_init(&w->choice, weights, w->light_count);
-    for (uint32_t i = 0; i < w->light_count; i++)
-        w->lights[i].pmf = w->choice.entries[i].pmf;
-    mem_free(weights);
-}
-
 static bool prepare_lights(struct world *w, struct scene *s) {
     w->light_count = s->light_count;
     w->lights = mem_array(s->light_count, sizeof *w->lights);
@@ -80,12 +62,11 @@ static bool prepare_lights(struct world *w, struct scene *s) {
         }
         if (type->prepare && !type->prepare(l->object, &info, &s->arena))
             return false;
-        w->lights[i] = (struct world_light){type, l->object->data, 1};
+        w->lights[i] = (struct world_light){.type = type, .data = l->object->data};
         if (type->infinite && !type->delta)
             w->infinite[w->infinite_count++] = i;
     }
-    if (w->light_count > 1)
-        init_choice(w);
+    light_choice_init(&w->choice, LIGHT_CHOICE_AUTO, w->lights, w->light_count);
     return true;
 }
 
@@ -139,6 +120,13 @@ fail:
     return NULL;
 }
 
+void world_choose_lights(struct world *w, enum light_choice_mode mode) {
+    if (mode == LIGHT_CHOICE_AUTO)
+        return;
+    light_choice_finish(&w->choice);
+    light_choice_init(&w->choice, mode, w->lights, w->light_count);
+}
+
 void world_destroy(struct world *w) {
     if (!w)
         return;
@@ -150,7 +138,7 @@ void world_destroy(struct world *w) {
         if (light_type_of(s->lights[i].object)->finish)
             light_type_of(s->lights[i].object)->finish(s->lights[i].object->data);
     accel_destroy(w->accel);
-    alias_finish(&w->choice);
+    light_choice_finish(&w->choice);
     mem_free(w->shapes);
     mem_free(w->quadrics);
     mem_free(w->instances);

@@ -4,16 +4,8 @@
 
 #include "accel/accel.h"
 #include "bsdf/bsdf.h"
-#include "light/light.h"
-#include "math/distribution.h"
 #include "scene/scene.h"
-
-// A light, with the functions and data it is called with at every vertex.
-struct world_light {
-    const struct light_type *type;
-    const void *data;
-    float pmf; // probability of being chosen by world_choose_light
-};
+#include "world/light_choice.h"
 
 // Transforms of an instance or a quadric as surfaces need them.
 struct world_transform {
@@ -41,7 +33,7 @@ struct world {
     struct accel *accel;
     struct world_light *lights; // index: as in the scene
     uint32_t light_count;
-    struct alias_table choice;  // of lights, for next event estimation
+    struct light_choice choice; // of lights, for next event estimation
     uint32_t *infinite;         // lights that rays leaving the scene find
     uint32_t infinite_count;
     struct world_transform *quadrics;  // by shape; NULL: the scene has none
@@ -59,13 +51,21 @@ struct world {
 struct world *world_create(struct scene *scene, int threads);
 void world_destroy(struct world *w);
 
-// One light for next event estimation; SCENE_NONE when the scene has none.
-static inline uint32_t world_choose_light(const struct world *w, float u, float *pmf) {
-    if (w->light_count <= 1) {
-        *pmf = 1;
-        return w->light_count ? 0 : SCENE_NONE;
-    }
-    return alias_sample(&w->choice, u, pmf, NULL);
+// Chooses lights in another way than world_create did (LIGHT_CHOICE_AUTO).
+void world_choose_lights(struct world *w, enum light_choice_mode mode);
+
+// A point on one light as seen from a place, for next event estimation; s->pdf_sa includes the
+// choice of the light. false: nothing was sampled. u1 is not used unless w->choice.draws.
+static inline bool world_sample_light(const struct world *w, const struct light_place *at,
+                                      float u1, struct vec2 u2, uint32_t *light,
+                                      struct light_sample *s) {
+    return light_choice_sample(&w->choice, w->lights, w->light_count, at, u1, u2, light, s);
+}
+
+// The density with which world_sample_light finds the point of a light that a ray found.
+static inline float world_light_pdf_sa(const struct world *w, uint32_t light,
+                                       const struct light_place *at, const struct light_hit *hit) {
+    return light_choice_pdf_sa(&w->choice, &w->lights[light], at, hit);
 }
 
 // What a ray found, ready for shading.

@@ -62,15 +62,15 @@ static void make_rays(const struct job *job, int width, int height, struct rays 
         struct accel_hit hit;
         struct surface s;
         struct light_sample l;
-        float pmf;
+        uint32_t light;
         sensor_type_of(sensor)->ray(sensor->data, (float)x + rng_float(&rng),
                                     (float)y + rng_float(&rng), (struct vec2){0.5f, 0.5f}, r);
-        const uint32_t light = world_choose_light(w, rng_float(&rng), &pmf);
+        const float choice = rng_float(&rng);
         const struct vec2 u = {rng_float(&rng), rng_float(&rng)};
-        if (light == SCENE_NONE || !accel_intersect(w->accel, r, &hit))
+        if (!accel_intersect(w->accel, r, &hit))
             continue;
         world_surface(w, r, &hit, &s);
-        if (!w->lights[light].type->sample(w->lights[light].data, s.p, u, &l))
+        if (!world_sample_light(w, &(struct light_place){.p = s.p}, choice, u, &light, &l))
             continue;
         out->shadow[k] = world_shadow_ray(&s, &l);
         out->pending[block] |= 1u << i;

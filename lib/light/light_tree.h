@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Choosing one of many lights by what each could give at a place, in O(log n).
+//
+// A tree of bounds over position and direction is descended from its root, at every node by chance
+// in proportion to an upper bound of the irradiance of each child (A. Conty Estevez, C. Kulla 2018,
+// Importance Sampling of Many Lights with Adaptive Tree Splitting; without the splitting; M. Pharr,
+// W. Jakob, G. Humphreys 2023, 12.6.3). Nodes have four children that are looked at together. The
+// probability of a light is found on the way from its leaf up to the root.
+//
+// A light of positive intensity that can light a place has a positive probability there. Nothing
+// here has a unit of its own: scenes that differ by a power of two give the same bits.
+#pragma once
+
+#include <stddef.h>
+
+#include "math/lanes.h"
+
+// Where one light (a point, a triangle, ...) stands and whither it shines.
+struct light_bounds {
+    vec3 min, max;
+    vec3 axis;       // unit; middle of its normals
+    float cos_o;     // cosine of the angle around the axis that its normals fill; -1: all
+    float cos_e;     // in [0, 1): cosine of how far from a normal it still shines; 0: a surface
+    float intensity; // largest, luminance in W/sr; 0: dark
+};
+
+// Where light arrives.
+struct light_place {
+    vec3 p;
+    vec3 n; // unit: light from its other side counts little; zero: all sides count the same
+};
+
+struct light_tree {
+    struct light_node *nodes; // owned
+    uint32_t *slots;          // by item: 4 x node + child; owned
+    uint32_t node_count, item_count;
+};
+
+// Items without intensity are never chosen.
+void light_tree_init(struct light_tree *t, const struct light_bounds *items, uint32_t count);
+void light_tree_finish(struct light_tree *t);
+size_t light_tree_bytes(const struct light_tree *t);
+
+// u in [0, 1) with as many bits as there are. false: no light reaches the place.
+bool light_tree_choose(const struct light_tree *t, const struct light_place *at, double u,
+                       uint32_t *item, float *pmf);
+// The probability that choose finds the item.
+float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item);
+
+// ---- for building
+
+#define LIGHT_TREE_LEAF 0x80000000u // of a child: it is item child - LIGHT_TREE_LEAF
+#define LIGHT_TREE_NONE UINT32_MAX  // slot of an item that is not in the tree
+
+// Bounds of four children, a lane each. Unused lanes have intensity 0.
+struct light_node {
+    float4 centre[3], radius; // of a sphere
+    float4 axis[3];
+    float4 cos_o, cos_e;
+    float4 intensity;
+    uint32_t child[4];
+    uint32_t parent; // 4 x node + child; of the root: LIGHT_TREE_LEAF
+};

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/light_choice.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+#include "math/hash.h"
+
+// Measured with tests/bench/light_tree: from so many parts on the tree pays.
+enum { LEAST_FOR_TREE = 8 };
+
+// ---- tables
+
+static float power_of(const struct world_light *l) {
+    const float power = l->type->power(l->data);
+    return power > 0 ? minf(power, 1e30f) : 0;
+}
+
+// Half of the choice is uniform: power alone can starve a weak light that stands near.
+static void init_by_light(struct light_choice *c, struct world_light *all, uint32_t count) {
+    float *weights = mem_array(count, sizeof *weights);
+    double total = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        weights[i] = power_of(&all[i]);
+        total += (double)weights[i];
+    }
+    const double uniform = total > 0 ? total / count : 1;
+    for (uint32_t i = 0; i < count; i++)
+        weights[i] = (float)(((double)weights[i] + uniform) / (total > 0 ? 2 * total : 1));
+    alias_init(&c->table, weights, count);
+    for (uint32_t i = 0; i < count; i++)
+        all[i].pmf = c->table.entries[i].pmf;
+    mem_free(weights);
+}
+
+static uint32_t count_parts(struct world_light *all, uint32_t count, bool *places) {
+    uint64_t parts = 0;
+    *places = false;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct light_type *type = all[i].type;
+        const uint32_t n = type->parts ? type->parts(all[i].data) : 1;
+        all[i].first_part = (uint32_t)parts;
+        all[i].parts = n > 1 ? n : 0;
+        *places |= type->bounds != NULL;
+        parts += n;
+    }
+    return parts < LIGHT_TREE_LEAF ? (uint32_t)parts : 0;
+}
+
+// Bounds of every part; those of lights without a place are dark.
+static struct light_bounds *list_parts(struct light_choice *c, const struct world_light *all,
+                                       uint32_t count, uint32_t parts) {
+    struct light_bounds *bounds = mem_array(parts, sizeof *bounds);
+    c->part_light = mem_array(parts, sizeof *c->part_light);
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t k = 0; k < (all[i].parts ? all[i].parts : 1); k++) {
+            c->part_light[all[i].first_part + k] = i;
+            if (all[i].type->bounds)
+                all[i].type->bounds(all[i].data, k, &bounds[all[i].first_part + k]);
+        }
+    return bounds;
+}
+
+// A part's power: that of its light, shared by intensity.
+static void init_by_part(struct light_choice *c, bool uniform, const struct world_light *all,
+                         uint32_t count, const struct light_bounds *bounds, uint32_t parts) {
+    float *weights = mem_array(parts, sizeof *weights);
+    double total = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct light_bounds *b = &bounds[all[i].first_part];
+        double sum = 0;
+        for (uint32_t k = 0; k < all[i].parts; k++)
+            sum += (double)b[k].intensity;
+        const double power = (double)power_of(&all[i]);
+        for (uint32_t k = 0; k < all[i].parts; k++)
+            weights[all[i].first_part + k] = (float)(power * (double)b[k].intensity / sum);
+        if (all[i].parts == 0)
+            weights[all[i].first_part] = (float)power;
+        total += power;
+    }
+    // nothing that shines is out of reach, not even what has no power by rounding
+    const float least = (float)(1e-6 * total / parts);
+    for (uint32_t i = 0; i < parts; i++)
+        weights[i] = uniform ? 1 : (float)((double)maxf(weights[i], least) / (total > 0 ? total : 1));
+    alias_init(&c->table, weights, parts);
+    mem_free(weights);
+}
+
+// ---- the tree and, apart, the lights without a place
+
+static void init_tree(struct light_choice *c, const struct world_light *all, uint32_t count,
+                      const struct light_bounds *bounds, uint32_t parts) {
+    float *weights = mem_array(count, sizeof *weights);
+    c->table_light = mem_array(count, sizeof *c->table_light);
+    double apart = 0, total = 0;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const double power = (double)power_of(&all[i]);
+        total += power;
+        if (all[i].type->bounds)
+            continue;
+        apart += power;
+        weights[n] = (float)power;
+        c->table_light[n++] = i;
+    }
+    for (uint32_t i = 0; i < n; i++)
+        weights[i] = apart > 0 ? (float)((0.5 * (double)weights[i] + 0.5 * apart / n) / apart) : 1;
+    // By power and by number, half and half; the tree counts as one, and so always has its share.
+    if (n > 0) {
+        c->table_share = (float)(0.5 * n / (n + 1) + (total > 0 ? 0.5 * apart / total : 0));
+        alias_init(&c->table, weights, n);
+    }
+    light_tree_init(&c->tree, bounds, parts);
+    c->has_tree = true;
+    mem_free(weights);
+}
+
+void light_choice_init(struct light_choice *c, enum light_choice_mode mode,
+                       struct world_light *all, uint32_t count) {
+    bool places;
+    *c = (struct light_choice){.draws = count > 1};
+    for (uint32_t i = 0; i < count; i++)
+        all[i].pmf = 1;
+    const uint32_t parts = count_parts(all, count, &places);
+    const bool many = mode != LIGHT_CHOICE_AUTO || parts >= LEAST_FOR_TREE;
+    c->by_part = many && places && parts > 1;
+    if (!c->by_part) {
+        for (uint32_t i = 0; i < count; i++)
+            all[i].parts = 0;
+        if (count > 1)
+            init_by_light(c, all, count);
+        return;
+    }
+    c->draws = true;
+    struct light_bounds *bounds = list_parts(c, all, count, parts);
+    if (mode == LIGHT_CHOICE_AUTO || mode == LIGHT_CHOICE_TREE)
+        init_tree(c, all, count, bounds, parts);
+    else
+        init_by_part(c, mode == LIGHT_CHOICE_UNIFORM, all, count, bounds, parts);
+    for (uint32_t i = 0; i < c->table.count && c->has_tree; i++)
+        all[c->table_light[i]].pmf = c->table.entries[i].pmf * c->table_share;
+    mem_free(bounds);
+}
+
+void light_choice_finish(struct light_choice *c) {
+    alias_finish(&c->table);
+    light_tree_finish(&c->tree);
+    mem_free(c->table_light);
+    mem_free(c->part_light);
+    *c = (struct light_choice){0};
+}
+
+size_t light_choice_bytes(const struct light_choice *c) {
+    return c->table.count * sizeof *c->table.entries + light_tree_bytes(&c->tree) +
+           (c->part_light ? c->tree.item_count * sizeof *c->part_light : 0);
+}
+
+const char *light_choice_name(const struct light_choice *c) {
+    return !c->draws ? "none" : c->has_tree ? "tree" : c->by_part ? "parts" : "lights";
+}
+
+// ---- sampling
+
+// A float has 24 bits, too few for a million parts: the ones below come from the other numbers.
+static double more_bits(float u1, struct vec2 u2) {
+    uint32_t x, y;
+    memcpy(&x, &u2.x, sizeof x);
+    memcpy(&y, &u2.y, sizeof y);
+    return (double)u1 + 0x1p-24 * (0x1p-32 * (double)hash_u32(x ^ hash_u32(y)));
+}
+
+static bool choose_part(const struct light_choice *c, const struct light_place *at, float u1,
+                        struct vec2 u2, uint32_t *part, float *pmf) {
+    const double u = more_bits(u1, u2);
+    if (!c->has_tree) {
+        *part = alias_sample_fine(&c->table, u, pmf);
+        return true;
+    }
+    const double share = (double)c->table_share;
+    if (u >= share) {
+        if (!light_tree_choose(&c->tree, at, (u - share) / (1 - share), part, pmf))
+            return false;
+        *pmf *= 1 - c->table_share;
+        return true;
+    }
+    *part = LIGHT_TREE_LEAF | c->table_light[alias_sample_fine(&c->table, u / share, pmf)];
+    *pmf *= c->table_share;
+    return true;
+}
+
+static bool sample_chosen(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
+                          struct light_sample *s) {
+    return l->parts ? l->type->part_sample(l->data, part - l->first_part, p, u2, s)
+                    : l->type->sample(l->data, p, u2, s);
+}
+
+bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
+                         uint32_t count, const struct light_place *at, float u1, struct vec2 u2,
+                         uint32_t *light, struct light_sample *s) {
+    float pmf = 1;
+    uint32_t part = 0;
+    *light = 0;
+    if (count == 0)
+        return false;
+    if (c->by_part) {
+        if (!choose_part(c, at, u1, u2, &part, &pmf))
+            return false;
+        *light = part & LIGHT_TREE_LEAF ? part & ~LIGHT_TREE_LEAF : c->part_light[part];
+    } else if (count > 1) {
+        *light = alias_sample(&c->table, u1, &pmf, NULL);
+    }
+    if (!sample_chosen(&all[*light], part, at->p, u2, s))
+        return false;
+    s->pdf_sa *= pmf;
+    return s->pdf_sa > 0;
+}
+
+float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,
+                          const struct light_place *at, const struct light_hit *hit) {
+    const float pdf = light->parts ? light->type->part_pdf_sa(light->data, at->p, hit)
+                                   : light->type->pdf_sa(light->data, at->p, hit);
+    if (!c->by_part || (c->has_tree && !light->type->bounds))
+        return light->pmf * pdf;
+    const uint32_t part = light->first_part + (light->parts ? hit->at.triangle : 0);
+    const float pmf = c->has_tree ? (1 - c->table_share) * light_tree_pmf(&c->tree, at, part)
+                                  : c->table.entries[part].pmf;
+    return pmf * pdf;
+}
