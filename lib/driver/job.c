@@ -60,7 +60,7 @@ static void override_int(struct object *o, const char *name, int value) {
     }
 }
 
-static bool prepare_integrator(const struct job_options *o, struct scene *s,
+static bool prepare_integrator(const struct job_options *o, struct scene *s, struct world *w,
                                struct film_options *film) {
     struct integrator_wants wants = {0};
     if (o->max_depth)
@@ -68,6 +68,7 @@ static bool prepare_integrator(const struct job_options *o, struct scene *s,
     const struct integrator_type *type = integrator_type_of(s->integrator);
     if (type->prepare && !type->prepare(s->integrator, &wants))
         return false;
+    world_choose_lights(w, wants.light_choice);
     film->moments = wants.moments;
     film->aovs |= wants.aovs;
     return true;
@@ -89,7 +90,7 @@ static bool prepare(struct job *job, const struct job_options *o) {
     job->film = (struct film_options){.alpha = s->film.alpha, .variance = o->variance,
                                       .paths = o->paths};
     if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
-        !choose_crop(o, &s->film, &job->film) || !prepare_integrator(o, s, &job->film) ||
+        !choose_crop(o, &s->film, &job->film) || !prepare_integrator(o, s, job->world, &job->film) ||
         !sensor->prepare(s->sensors[0], s->film.width, s->film.height, s->centre) ||
         (o->light_groups && !light_groups_init(&job->groups, s)) ||
         !filter_sampler_init(&job->filter, s->filter))

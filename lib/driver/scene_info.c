@@ -100,7 +100,8 @@ static void add_features(const struct job *job, const struct scene_summary *s, s
         {"area-lights", s->emitting_shapes > 0},
         {"delta-lights", count_delta_lights(w) > 0},
         {"environment", w->infinite_count > 0},
-        {"light-choice", w->light_count > 1},
+        {"light-choice", w->choice.draws},
+        {"light-tree", w->choice.has_tree},
         {"recentring", s->recentred},
         {"alpha", job->film.alpha},
     };
@@ -114,6 +115,7 @@ static void add_memory(const struct job *job, const struct scene_summary *s, str
     struct json *bytes = json_add_object(out, "bytes");
     json_add_count(bytes, "meshes", (int64_t)s->mesh_bytes);
     json_add_count(bytes, "acceleration_structure", (int64_t)accel_bytes(job->world->accel));
+    json_add_count(bytes, "light_choice", (int64_t)light_choice_bytes(&job->world->choice));
     json_add_count(bytes, "film", (int64_t)film_bytes(&job->film, job->render.spp));
     json_add_count(bytes, "peak_while_loading", (int64_t)mem_peak());
 }

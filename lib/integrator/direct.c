@@ -7,6 +7,7 @@
 struct direct {
     int shading_samples, emitter_samples, bsdf_samples;
     bool hide_emitters;
+    int light_choice;
 };
 
 static const struct param params[] = {
@@ -18,13 +19,14 @@ static const struct param params[] = {
      .max = 1024, .unit = "", .help = "material samples at each point; -1: shading_samples"},
     {"hide_emitters", PARAM_BOOL, offsetof(struct direct, hide_emitters), .def = "false",
      .unit = "", .help = "do not show lights that are seen directly"},
+    INTEGRATOR_LIGHT_CHOICE(struct direct, light_choice),
     INTEGRATOR_IGNORED,
     PARAM_END,
 };
 
 static bool prepare(struct object *self, struct integrator_wants *wants) {
     struct direct *d = self->data;
-    (void)wants;
+    wants->light_choice = (enum light_choice_mode)d->light_choice;
     if (d->emitter_samples < 0)
         d->emitter_samples = d->shading_samples;
     if (d->bsdf_samples < 0)

@@ -35,6 +35,7 @@ enum { INTEGRATOR_MOST_EVENTS = 4096 };
 struct integrator_wants {
     bool moments;
     uint32_t aovs; // enum film_aov
+    enum light_choice_mode light_choice;
 };
 
 struct integrator_type {
@@ -44,6 +45,12 @@ struct integrator_type {
     void (*trace)(const void *data, struct trace_context *ctx,
                   const struct path_start starts[SINK_LANES]);
 };
+
+// How lights are chosen, for integrators that sample them: an int, to be passed on by prepare.
+#define INTEGRATOR_LIGHT_CHOICE(type, member)                                                      \
+    {"light_choice", PARAM_CHOICE, offsetof(type, member), .def = "auto", .unit = "",              \
+     .help = "auto: by a light tree where lights, or triangles that emit, are many",               \
+     .choices = light_choice_modes}
 
 // How other renderers cut up their work; here it cannot change the picture.
 #define INTEGRATOR_IGNORED                                                                         \

@@ -9,6 +9,7 @@
 struct path {
     int max_depth, rr_depth;
     bool hide_emitters, strict_normals;
+    int light_choice;
 };
 
 static const struct param params[] = {
@@ -20,9 +21,15 @@ static const struct param params[] = {
      .help = "do not show lights that are seen directly"},
     {"strict_normals", PARAM_BOOL, offsetof(struct path, strict_normals), .def = "false",
      .unit = "", .help = "drop directions on which shading and geometric normal disagree"},
+    INTEGRATOR_LIGHT_CHOICE(struct path, light_choice),
     INTEGRATOR_IGNORED,
     PARAM_END,
 };
+
+static bool prepare(struct object *self, struct integrator_wants *wants) {
+    wants->light_choice = (enum light_choice_mode)((const struct path *)self->data)->light_choice;
+    return true;
+}
 
 // Dimensions of the random numbers: those of the camera, then so many for each vertex, whether or
 // not it needs them all, so that each purpose keeps its own well-distributed points.
@@ -270,5 +277,5 @@ const struct integrator_type integrator_path = {
     .entry = {.name = "path",
               .help = "path tracing with next event estimation and MIS (Kajiya 1986; Veach 1995)",
               .params = params, .size = sizeof(struct path)},
-    .trace = trace,
+    .prepare = prepare, .trace = trace,
 };

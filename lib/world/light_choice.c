@@ -9,6 +9,8 @@
 // Measured with tests/bench/light_tree: from so many parts on the tree pays.
 enum { LEAST_FOR_TREE = 8 };
 
+const char *const light_choice_modes[] = {"auto", "tree", "power", "uniform", NULL};
+
 // ---- tables
 
 static float power_of(const struct world_light *l) {

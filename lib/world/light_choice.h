@@ -10,7 +10,14 @@
 #include "light/light.h"
 #include "math/distribution.h"
 
-enum light_choice_mode { LIGHT_CHOICE_AUTO, LIGHT_CHOICE_TREE, LIGHT_CHOICE_POWER, LIGHT_CHOICE_UNIFORM };
+enum light_choice_mode {
+    LIGHT_CHOICE_AUTO,    // the tree where there are many lights, else the table
+    LIGHT_CHOICE_TREE,
+    LIGHT_CHOICE_POWER,   // of each part
+    LIGHT_CHOICE_UNIFORM, // all parts the same
+};
+
+extern const char *const light_choice_modes[]; // their names, NULL-terminated
 
 // A light, with the functions and data it is called with at every vertex.
 struct world_light {
