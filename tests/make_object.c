@@ -7,6 +7,7 @@
 
 #include "math/ior.h"
 #include "math/transform.h"
+#include "volume/volume.h"
 
 static void fail(const struct entry *e, const char *what, const char *detail) {
     printf("make_object: %s: %s \"%s\"\n", e ? e->name : "?", what, detail);
@@ -60,12 +61,16 @@ static void set(struct arena *arena, const struct entry *e, const struct param *
     case PARAM_REFLECTANCE:
     case PARAM_EMISSION:
     case PARAM_INDEX: *(spectrum *)out = parse_colour(e, text); break;
+    case PARAM_VOLUME:
+        *(struct volume_ref *)out = (struct volume_ref){parse_colour(e, text), NULL, true};
+        break;
     case PARAM_TEXTURE:
     case PARAM_TEXTURE_EMISSION:
     case PARAM_TEXTURE_SCALAR: ((struct texture_ref *)out)->value = parse_colour(e, text); break;
     case PARAM_IOR: *(float *)out = parse_ior(e, text); break;
     case PARAM_BSDF:
     case PARAM_INTEGRATOR:
+    case PARAM_PHASE:
     case PARAM_IGNORED: break;
     }
 }
@@ -84,7 +89,8 @@ static void adopt(const struct entry *e, void *data, const struct object *child)
         void *out = (char *)data + p->offset;
         const bool takes_texture = p->type == PARAM_TEXTURE || p->type == PARAM_TEXTURE_SCALAR ||
                                    p->type == PARAM_TEXTURE_EMISSION;
-        const bool takes_other = p->type == PARAM_BSDF || p->type == PARAM_INTEGRATOR;
+        const bool takes_other = p->type == PARAM_BSDF || p->type == PARAM_INTEGRATOR ||
+                                 p->type == PARAM_PHASE;
         const struct object **slot = texture ? &((struct texture_ref *)out)->texture : out;
         if ((texture ? takes_texture : takes_other) && !*slot) {
             *slot = child;

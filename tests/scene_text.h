@@ -13,6 +13,8 @@
 #include "filter/filter.h"
 #include "integrator/integrator.h"
 #include "light/light.h"
+#include "medium/medium.h"
+#include "phase/phase.h"
 #include "sampler/sampler.h"
 #include "scene/scene.h"
 #include "sensor/sensor.h"
@@ -22,7 +24,8 @@ static char scene_folder[64];
 
 static inline struct scene_options scene_real_options(void) {
     return (struct scene_options){.registries = {&textures, &bsdfs, &lights, &sensors, &samplers,
-                                                 &filters, &integrators}, .threads = 1};
+                                                 &filters, &integrators, &volumes, &phases,
+                                                 &media}, .threads = 1};
 }
 
 static inline void scene_folder_open(void) {

@@ -30,6 +30,8 @@ enum param_type {
     PARAM_IOR,         // float: a number or the name of a material (table in math/ior.h)
     PARAM_BSDF,        // const struct object *: child slot
     PARAM_INTEGRATOR,  // const struct object *: child slot
+    PARAM_VOLUME,      // struct volume_ref; a constant is read as PARAM_INDEX
+    PARAM_PHASE,       // const struct object *: child slot
     PARAM_IGNORED,     // accepted without effect; the reader says so once
 };
 

@@ -6,12 +6,13 @@
 #include <string.h>
 
 #include "base/thread.h"
+#include "phase/phase.h"
 
 enum { DEFAULT_SPP = 64 };
 
 struct scene_registries job_registries(void) {
     return (struct scene_registries){&textures, &bsdfs, &lights, &sensors, &samplers, &filters,
-                                     &integrators};
+                                     &integrators, &volumes, &phases, &media};
 }
 
 struct scene_define *defines_parse(const struct option_list *texts, struct arena *arena) {

@@ -24,15 +24,17 @@ static uint32_t find_or_add(struct light_groups *g, const char *name) {
 bool light_groups_init(struct light_groups *g, const struct scene *s) {
     const bool named = any_named(s);
     g->names = mem_array(s->light_count + 1, sizeof *g->names);
-    g->of_light = mem_array(s->light_count, sizeof *g->of_light);
+    // Media that glow follow the lights as sources.
+    const uint32_t sources = s->light_count + s->medium_count;
+    g->of_light = mem_array(sources, sizeof *g->of_light);
     for (uint32_t i = 0; i < s->light_count; i++) {
         const char *name = named ? s->lights[i].group : s->lights[i].name;
         g->of_light[i] = name ? find_or_add(g, name) : UINT32_MAX;
     }
     const uint32_t rest = g->count;
     g->names[g->count++] = "rest";
-    for (uint32_t i = 0; i < s->light_count; i++)
-        if (g->of_light[i] == UINT32_MAX)
+    for (uint32_t i = 0; i < sources; i++)
+        if (i >= s->light_count || g->of_light[i] == UINT32_MAX)
             g->of_light[i] = rest;
     if (rest <= FILM_MOST_GROUPS)
         return true;

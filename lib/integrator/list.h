@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrators, one a line; each is integrator/NAME.c.
 X(path)
+X(volpath)
+X(volpathmis)
 X(direct)
 X(aov)
 X(moment)

@@ -28,6 +28,8 @@ static const char *takes(enum param_type type) {
     case PARAM_IOR: return "number or material";
     case PARAM_BSDF: return "bsdf";
     case PARAM_INTEGRATOR: return "integrator";
+    case PARAM_VOLUME: return "colour, spectrum, number or volume";
+    case PARAM_PHASE: return "phase";
     case PARAM_IGNORED: return "";
     }
     return "";
@@ -77,6 +79,7 @@ static const char *placeholder(const struct param *p, char out[32]) {
     case PARAM_STRING: return "TEXT";
     case PARAM_BSDF: return "diffuse";
     case PARAM_INTEGRATOR: return "path";
+    case PARAM_PHASE: return "isotropic";
     case PARAM_POINT:
     case PARAM_VECTOR: return "0 0 1";
     default: snprintf(out, 32, "%g", p->min > 1 ? p->min : 1); return out;
@@ -91,7 +94,7 @@ static void print_example_param(const struct param *p) {
                       : p->type == PARAM_TEXTURE_SCALAR ? "float"
                                                         : param_tag(p, value);
     const bool object = needs_texture || p->type == PARAM_BSDF || p->type == PARAM_INTEGRATOR ||
-                        strcmp(tag, "spectrum") == 0;
+                        p->type == PARAM_PHASE || strcmp(tag, "spectrum") == 0;
     printf("    <%s name=\"%s\"", tag, p->name);
     if (p->type != PARAM_TRANSFORM)
         printf(" %s=\"%s\"", object ? "type" : "value", value);

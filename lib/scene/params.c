@@ -7,6 +7,7 @@
 #include "math/ior.h"
 #include "scene/params.h"
 #include "texture/texture.h"
+#include "volume/volume.h"
 
 static void *place(const struct param *p, void *data) {
     return (char *)data + p->offset;
@@ -129,7 +130,8 @@ static enum param_type colour_use(enum param_type type) {
     switch (type) {
     case PARAM_TEXTURE: return PARAM_REFLECTANCE;
     case PARAM_TEXTURE_EMISSION: return PARAM_EMISSION;
-    case PARAM_TEXTURE_SCALAR: return PARAM_INDEX;
+    case PARAM_TEXTURE_SCALAR:
+    case PARAM_VOLUME: return PARAM_INDEX;
     default: return type;
     }
 }
@@ -151,11 +153,17 @@ static bool read_colour(struct reader *r, const struct xml_node *node, const str
 
 bool param_is_colour(enum param_type type) {
     return type == PARAM_REFLECTANCE || type == PARAM_EMISSION || type == PARAM_INDEX ||
-           param_is_texture(type);
+           type == PARAM_VOLUME || param_is_texture(type);
 }
 
 bool param_is_texture(enum param_type type) {
     return type == PARAM_TEXTURE || type == PARAM_TEXTURE_EMISSION || type == PARAM_TEXTURE_SCALAR;
+}
+
+static bool read_volume(struct reader *r, const struct xml_node *node, const struct param *p,
+                        struct volume_ref *out) {
+    out->given = true;
+    return read_colour(r, node, p, &out->value);
 }
 
 bool param_read_value(struct reader *r, const struct xml_node *node, const struct param *p,
@@ -180,7 +188,9 @@ bool param_read_value(struct reader *r, const struct xml_node *node, const struc
     case PARAM_TEXTURE:
     case PARAM_TEXTURE_EMISSION:
     case PARAM_TEXTURE_SCALAR: return read_colour(r, node, p, &((struct texture_ref *)out)->value);
+    case PARAM_VOLUME: return read_volume(r, node, p, out);
     case PARAM_BSDF: return wrong_tag(node, p, "bsdf");
+    case PARAM_PHASE: return wrong_tag(node, p, "phase");
     case PARAM_INTEGRATOR: return wrong_tag(node, p, "integrator");
     case PARAM_IGNORED: ignore_name(r, p->name, node->at); return true;
     }
@@ -209,8 +219,24 @@ static bool read_colour_object(struct reader *r, struct where at, struct xml_nod
     return ok;
 }
 
+static bool read_volume_object(struct reader *r, struct xml_node *target, struct id_entry *entry,
+                               const struct param *p, void *data) {
+    struct volume_ref *out = place(p, data);
+    out->given = true;
+    out->volume = object_shared(r, r->options->registries.volumes, &r->volumes, target, entry);
+    return out->volume != NULL;
+}
+
 bool param_read_object(struct reader *r, struct where at, struct xml_node *target,
                        struct id_entry *entry, const struct param *p, void *data) {
+    if (p->type == PARAM_VOLUME && has_tag(target, "volume"))
+        return read_volume_object(r, target, entry, p, data);
+    if (p->type == PARAM_PHASE) {
+        const struct object *o =
+            object_shared(r, r->options->registries.phases, &r->phases, target, entry);
+        *(const struct object **)place(p, data) = o;
+        return o != NULL;
+    }
     if (p->type == PARAM_BSDF) {
         const struct object *o =
             object_shared(r, r->options->registries.bsdfs, &r->bsdfs, target, entry);
@@ -230,6 +256,10 @@ bool param_accepts(const struct param *p, const struct xml_node *target) {
         return p->type == PARAM_BSDF;
     if (has_tag(target, "integrator"))
         return p->type == PARAM_INTEGRATOR;
+    if (has_tag(target, "volume"))
+        return p->type == PARAM_VOLUME;
+    if (has_tag(target, "phase"))
+        return p->type == PARAM_PHASE;
     return (has_tag(target, "texture") || has_tag(target, "spectrum")) && param_is_colour(p->type);
 }
 
@@ -245,6 +275,7 @@ const char *param_tag(const struct param *p, const char *value) {
     case PARAM_TRANSFORM: return "transform"; // the identity: it has no steps
     case PARAM_BSDF: return "bsdf";
     case PARAM_INTEGRATOR: return "integrator";
+    case PARAM_PHASE: return "phase";
     case PARAM_CHOICE:
     case PARAM_STRING:
     case PARAM_FILE: return "string";
@@ -263,6 +294,7 @@ bool param_read_default(struct reader *r, const struct xml_node *owner, const st
     }
     struct xml_node *node = xml_new(param_tag(p, p->def), owner->at, r->arena);
     const bool object = p->type == PARAM_BSDF || p->type == PARAM_INTEGRATOR ||
+                        p->type == PARAM_PHASE ||
                         (param_is_colour(p->type) && has_tag(node, "spectrum"));
     xml_set(node, object ? "type" : "value", p->def, r->arena);
     return object ? param_read_object(r, owner->at, node, NULL, p, data)

@@ -28,6 +28,14 @@ struct mesh_job {
     bool failed;
 };
 
+// Materials of shapes that name none.
+enum default_bsdf {
+    DEFAULT_DIFFUSE,
+    DEFAULT_BLACK,
+    DEFAULT_NULL,
+    DEFAULT_BSDFS,
+};
+
 // ---- the reader -----------------------------------------------------------------------------
 
 struct id_entry {
@@ -55,8 +63,9 @@ struct reader {
 
     // what is made
     struct list textures, bsdfs, sensors; // struct object *
+    struct list volumes, phases, media;   // struct object *
     struct list shapes, instances, lights, jobs;
-    struct object *default_bsdf[2];
+    struct object *default_bsdf[DEFAULT_BSDFS];
     uint32_t group_count;
     int depth; // of objects being made inside objects
 };
@@ -142,11 +151,14 @@ void object_leave(struct reader *r, struct id_entry *entry);
 void ignore_name(struct reader *r, const char *name, struct where at);
 void ignored_report(const struct reader *r);
 
-// ---- shapes.c, meshes.c, view.c -------------------------------------------------------------
+// ---- media.c, shapes.c, meshes.c, view.c -------------------------------------------------------------
 
 // Takes a value element out of an object (the reader itself uses it) and returns its value, also
 // when asked again. NULL: there is none.
 const char *node_take_value(struct reader *r, struct xml_node *node, const char *name);
+// A <medium> that stands in a shape, a sensor or the scene; its index. SCENE_NONE after an error
+// message.
+uint32_t medium_read(struct reader *r, struct xml_node *target, struct id_entry *entry);
 bool shape_read(struct reader *r, struct xml_node *node, struct id_entry *entry);
 bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape);
 // Reads the mesh files of all shapes, recentres the scene and brings vertices into the world.

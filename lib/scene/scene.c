@@ -24,10 +24,12 @@ static bool read_child(struct reader *r, struct xml_node *child) {
         return sensor_read(r, target);
     if (strcmp(target->tag, "integrator") == 0)
         return integrator_read(r, target);
-    if (strcmp(target->tag, "medium") == 0 || strcmp(target->tag, "volume") == 0) {
-        log_error_at(child->at, "participating media (<%s>) are not supported yet", target->tag);
-        return false;
-    }
+    if (strcmp(target->tag, "medium") == 0)
+        return medium_read(r, target, entry) != SCENE_NONE;
+    if (strcmp(target->tag, "volume") == 0)
+        return object_shared(r, registries->volumes, &r->volumes, target, entry);
+    if (strcmp(target->tag, "phase") == 0)
+        return object_shared(r, registries->phases, &r->phases, target, entry);
     if (strcmp(target->tag, "emitter") == 0 || strcmp(target->tag, "spectrum") == 0 ||
         strcmp(target->tag, "texture") == 0)
         return true; // emitters in a second pass, spectra where they are used
@@ -76,10 +78,13 @@ static void finish(struct reader *r) {
     s->lights = keep(r, &r->lights, sizeof *s->lights, &s->light_count);
     s->textures = keep(r, &r->textures, sizeof *s->textures, &s->texture_count);
     s->bsdfs = keep(r, &r->bsdfs, sizeof *s->bsdfs, &s->bsdf_count);
+    s->volumes = keep(r, &r->volumes, sizeof *s->volumes, &s->volume_count);
+    s->phases = keep(r, &r->phases, sizeof *s->phases, &s->phase_count);
+    s->media = keep(r, &r->media, sizeof *s->media, &s->medium_count);
     s->sensors = keep(r, &r->sensors, sizeof *s->sensors, &s->sensor_count);
     s->group_count = r->group_count;
     struct list *lists[] = {&r->directories, &r->variables, &r->ids, &r->hashed, &r->ignored,
-                            &r->textures, &r->bsdfs, &r->sensors, &r->shapes, &r->instances,
+                            &r->textures, &r->bsdfs, &r->volumes, &r->phases, &r->media, &r->sensors, &r->shapes, &r->instances,
                             &r->lights, &r->jobs};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         mem_free(lists[i]->items);
@@ -96,6 +101,7 @@ struct scene *scene_read(const char *path, const struct scene_options *options) 
     struct scene *s = mem_array(1, sizeof *s);
     struct reader r = {.options = options, .scene = s, .arena = &s->arena};
     s->path = arena_strdup(&s->arena, path);
+    s->sensor_medium = SCENE_NONE;
     struct xml_node *root = load_scene_tree(&r, s->path);
     const bool ok = root && read_tree(&r, root);
     if (ok)

@@ -31,6 +31,7 @@ struct shape {
     const struct object *bsdf;   // never NULL after reading
     uint32_t light;              // index into lights, or SCENE_NONE
     uint32_t group;              // shapegroup it belongs to, or SCENE_NONE: directly in the world
+    uint32_t interior, exterior; // media behind and before it (normal outwards), or SCENE_NONE
 };
 
 struct instance {
@@ -71,9 +72,17 @@ struct scene {
     struct scene_light *lights;
     uint32_t light_count;
 
+    struct object **volumes; // children first
+    uint32_t volume_count;
+    struct object **phases; // children first
+    uint32_t phase_count;
+    struct object **media;
+    uint32_t medium_count;
+
     struct object **sensors; // the first is rendered unless the user names another
     uint32_t sensor_count;
     struct film_settings film;    // of the sensor that is rendered
+    uint32_t sensor_medium;       // index of the medium that sensor stands in, or SCENE_NONE
     struct object *filter;        // of that sensor's film
     struct object *sampler;       // of that sensor
     int sample_count;             // spp asked by the file; 0: none
@@ -86,6 +95,7 @@ struct scene {
 // The registries a reader may instantiate from.
 struct scene_registries {
     const struct registry *textures, *bsdfs, *lights, *sensors, *samplers, *filters, *integrators;
+    const struct registry *volumes, *phases, *media;
 };
 
 struct scene_define {

@@ -83,17 +83,40 @@ struct contents {
     struct xml_node *emitter;
     struct id_entry *emitter_entry;
     uint32_t group; // of an instance
+    uint32_t interior, exterior; // media
 };
+
+static const struct contents no_contents = {.group = SCENE_NONE, .interior = SCENE_NONE,
+                                            .exterior = SCENE_NONE};
 
 static bool group_read(struct reader *r, struct xml_node *node, struct id_entry *entry,
                        uint32_t *group);
 
 static bool refuse(const struct xml_node *child, const struct xml_node *target) {
-    if (strcmp(target->tag, "medium") == 0 || strcmp(target->tag, "subsurface") == 0)
-        log_error_at(child->at, "participating media (<%s>) are not supported yet", target->tag);
+    if (strcmp(target->tag, "subsurface") == 0)
+        log_error_at(child->at, "<subsurface> is not known: put a medium into the shape, and a "
+                     "dielectric onto it");
     else
         log_error_at(child->at, "a <%s> cannot stand in a shape", target->tag);
     return false;
+}
+
+static bool shape_medium(struct reader *r, const struct xml_node *child, struct xml_node *target,
+                         struct id_entry *entry, struct contents *c) {
+    const char *name = xml_get(child, "name");
+    const bool inside = name && strcmp(name, "interior") == 0;
+    if (!inside && !(name && strcmp(name, "exterior") == 0)) {
+        log_error_at(child->at, "a medium in a shape has the name \"%s\", expected \"interior\" or "
+                     "\"exterior\"", name ? name : "");
+        return false;
+    }
+    uint32_t *medium = inside ? &c->interior : &c->exterior;
+    if (*medium != SCENE_NONE) {
+        log_error_at(child->at, "a second %s medium in one shape", name);
+        return false;
+    }
+    *medium = medium_read(r, target, entry);
+    return *medium != SCENE_NONE;
 }
 
 static bool shape_child(struct reader *r, struct xml_node *child, struct xml_node *target,
@@ -107,6 +130,8 @@ static bool shape_child(struct reader *r, struct xml_node *child, struct xml_nod
         c->bsdf = object_shared(r, r->options->registries.bsdfs, &r->bsdfs, target, entry);
         return c->bsdf != NULL;
     }
+    if (strcmp(target->tag, "medium") == 0)
+        return shape_medium(r, child, target, entry, c);
     if (strcmp(target->tag, "emitter") != 0)
         return refuse(child, target);
     if (c->emitter) {
@@ -130,21 +155,33 @@ static bool instance_child(struct reader *r, struct xml_node *child, struct xml_
     return group_read(r, target, entry, &c->group);
 }
 
-// Material of shapes that name none: diffuse, black where the shape is a light (as Mitsuba 3).
-static const struct object *default_bsdf(struct reader *r, bool emits, struct where at) {
-    if (!r->default_bsdf[emits]) {
+// Material of shapes that name none: diffuse, black where the shape is a light (as Mitsuba 3); none
+// at all around a medium in files of old versions.
+static const struct object *default_bsdf(struct reader *r, enum default_bsdf kind, struct where at) {
+    if (!r->default_bsdf[kind]) {
         struct xml_node *node = xml_new("bsdf", at, r->arena);
-        xml_set(node, "type", "diffuse", r->arena);
-        if (emits) {
+        xml_set(node, "type", kind == DEFAULT_NULL ? "null" : "diffuse", r->arena);
+        if (kind == DEFAULT_BLACK) {
             struct xml_node *black = xml_new("float", at, r->arena);
             xml_set(black, "name", "reflectance", r->arena);
             xml_set(black, "value", "0", r->arena);
             xml_append(node, black);
         }
-        r->default_bsdf[emits] =
+        r->default_bsdf[kind] =
             object_shared(r, r->options->registries.bsdfs, &r->bsdfs, node, NULL);
     }
-    return r->default_bsdf[emits];
+    return r->default_bsdf[kind];
+}
+
+static enum default_bsdf default_kind(const struct xml_node *node, const struct contents *c) {
+    if (c->emitter)
+        return DEFAULT_BLACK;
+    if (c->interior == SCENE_NONE && c->exterior == SCENE_NONE)
+        return DEFAULT_DIFFUSE;
+    if (!node->old)
+        log_warn_at(node->at, "this boundary of a medium has no bsdf, which makes it diffuse; give it "
+                    "<bsdf type=\"null\"/> to let light in");
+    return node->old ? DEFAULT_NULL : DEFAULT_DIFFUSE;
 }
 
 // ---- lights ---------------------------------------------------------------------------------
@@ -261,7 +298,7 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
                                 ? &shape_types[strcmp(mesh_reader->name, "obj") == 0 ? OBJ : MESH]
                                 : &shape_types[type];
     struct shape_data d;
-    struct contents contents = {.group = SCENE_NONE};
+    struct contents contents = no_contents;
     memset(&d, 0, sizeof d);
     if (!object_fill(r, node, e, &d, false, shape_child, &contents))
         return false;
@@ -269,7 +306,8 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
     const char *id = xml_get(node, "id");
     *s = (struct shape){.kind = SHAPE_MESH, .name = id ? id : "", .type = xml_get(node, "type"),
                         .at = node->at, .to_world = d.to_world, .flip_normals = d.flip_normals,
-                        .bsdf = contents.bsdf, .light = SCENE_NONE, .group = group};
+                        .bsdf = contents.bsdf, .light = SCENE_NONE, .group = group,
+                        .interior = contents.interior, .exterior = contents.exterior};
     const uint32_t index = (uint32_t)r->shapes.count - 1;
     if (type == RECTANGLE)
         mesh_make_rectangle(&s->mesh);
@@ -280,7 +318,7 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
     else if (!place_quadric(node, type, &d, s))
         return false;
     if (!s->bsdf)
-        s->bsdf = default_bsdf(r, contents.emitter != NULL, node->at);
+        s->bsdf = default_bsdf(r, default_kind(node, &contents), node->at);
     if (!s->bsdf || !contents.emitter)
         return s->bsdf != NULL;
     if (group != SCENE_NONE) {
@@ -293,7 +331,7 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
 
 static bool make_instance(struct reader *r, struct xml_node *node) {
     struct shape_data d;
-    struct contents contents = {.group = SCENE_NONE};
+    struct contents contents = no_contents;
     memset(&d, 0, sizeof d);
     if (!object_fill(r, node, &shape_types[INSTANCE], &d, false, instance_child, &contents))
         return false;

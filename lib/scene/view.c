@@ -49,7 +49,7 @@ const struct registry scene_films = {"film", film_entries};
 
 // The sensor being read: the first one's film and sampler become the scene's.
 struct sensor_parts {
-    bool first, film, sampler;
+    bool first, film, sampler, medium;
 };
 
 static bool wrong_child(const struct xml_node *child, const struct xml_node *target,
@@ -151,24 +151,29 @@ static bool sampler_read(struct reader *r, struct xml_node *node, bool use) {
 
 // ---- sensor ---------------------------------------------------------------------------------
 
+static bool sensor_medium(struct reader *r, struct xml_node *target, struct id_entry *entry,
+                          bool use) {
+    const uint32_t medium = medium_read(r, target, entry);
+    if (use)
+        r->scene->sensor_medium = medium;
+    return medium != SCENE_NONE;
+}
+
 static bool sensor_child(struct reader *r, struct xml_node *child, struct xml_node *target,
                          struct id_entry *entry, void *ctx) {
     struct sensor_parts *parts = ctx;
-    (void)entry;
     const bool is_film = strcmp(target->tag, "film") == 0;
-    if (!is_film && strcmp(target->tag, "sampler") != 0) {
-        if (strcmp(target->tag, "medium") == 0)
-            log_error_at(child->at, "participating media (<medium>) are not supported yet");
-        else
-            wrong_child(child, target, "sensor");
-        return false;
-    }
-    bool *have = is_film ? &parts->film : &parts->sampler;
+    const bool is_medium = strcmp(target->tag, "medium") == 0;
+    if (!is_film && !is_medium && strcmp(target->tag, "sampler") != 0)
+        return wrong_child(child, target, "sensor");
+    bool *have = is_film ? &parts->film : is_medium ? &parts->medium : &parts->sampler;
     if (*have) {
         log_error_at(child->at, "a second %s in one sensor", target->tag);
         return false;
     }
     *have = true;
+    if (is_medium)
+        return sensor_medium(r, target, entry, parts->first);
     return is_film ? film_read(r, target, parts->first) : sampler_read(r, target, parts->first);
 }
 

@@ -19,7 +19,7 @@ enum { SINK_LANES = 16 };
 struct contribution {
     spectrum weight;   // of the path: scattering, cosines, 1/pdf, MIS, roulette; no emission
     spectrum emission; // radiance of the source along the path (light.h for delta lights)
-    uint32_t source;   // index of the light
+    uint32_t source;   // index of the light; from the number of lights on: of the medium that glows
     uint32_t depth;    // scattering events between sensor and source; 0: seen directly
     uint32_t lobe;     // enum lobe of the first scattering event; 0 at depth 0
     vec3 wi;           // direction from the last vertex towards the source

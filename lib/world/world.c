@@ -70,6 +70,26 @@ static bool prepare_lights(struct world *w, struct scene *s) {
     return true;
 }
 
+static bool prepare_media(struct world *w, struct scene *s) {
+    if (s->medium_count == 0)
+        return true;
+    for (uint32_t i = 0; i < s->volume_count; i++) {
+        const struct volume_type *type = volume_type_of(s->volumes[i]);
+        if (type->prepare && !type->prepare(s->volumes[i], s->centre, &s->arena))
+            return false;
+    }
+    w->media = mem_array(s->medium_count, sizeof *w->media);
+    for (uint32_t i = 0; i < s->medium_count; i++)
+        if (!medium_prepare(s->media[i], &s->arena, &w->media[i]))
+            return false;
+    w->boundaries = mem_array(s->shape_count, sizeof *w->boundaries);
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        const uint32_t in = s->shapes[i].interior, out = s->shapes[i].exterior;
+        w->boundaries[i] = (struct world_boundary){in != SCENE_NONE || out != SCENE_NONE, in, out};
+    }
+    return true;
+}
+
 static bool init_transform(struct world_transform *t, const struct transform *to_world,
                            struct where at) {
     t->to_world = *to_world;
@@ -108,7 +128,8 @@ struct world *world_create(struct scene *s, int threads) {
     if (!(w->radius > 0))
         w->radius = 1; // nothing, or a single point: any positive size will do
     init_shapes(w, s);
-    if (!init_transforms(w, s) || !prepare_textures(s) || !prepare_bsdfs(w, s) || !prepare_lights(w, s))
+    if (!init_transforms(w, s) || !prepare_textures(s) || !prepare_bsdfs(w, s) || !prepare_lights(w, s) ||
+        !prepare_media(w, s))
         goto fail;
     const double start = time_seconds();
     w->accel = accel_create(s, threads);
@@ -137,18 +158,26 @@ void world_destroy(struct world *w) {
     for (uint32_t i = 0; i < s->light_count; i++)
         if (light_type_of(s->lights[i].object)->finish)
             light_type_of(s->lights[i].object)->finish(s->lights[i].object->data);
+    for (uint32_t i = 0; i < s->volume_count; i++)
+        if (volume_type_of(s->volumes[i])->finish)
+            volume_type_of(s->volumes[i])->finish(s->volumes[i]->data);
     accel_destroy(w->accel);
     light_choice_finish(&w->choice);
     mem_free(w->shapes);
     mem_free(w->quadrics);
     mem_free(w->instances);
     mem_free(w->lights);
+    mem_free(w->media);
+    mem_free(w->boundaries);
     mem_free(w->infinite);
     mem_free(w);
 }
 
 struct ray world_shadow_ray(const struct surface *s, const struct light_sample *l) {
-    const vec3 o = surface_offset(s, l->wi);
+    return world_ray_to_light(surface_offset(s, l->wi), l);
+}
+
+struct ray world_ray_to_light(vec3 o, const struct light_sample *l) {
     if (!(l->distance < INFINITY))
         return (struct ray){o, l->wi, 0, INFINITY};
     if (!(length2(l->n) > 0))

@@ -4,6 +4,7 @@
 
 #include "accel/accel.h"
 #include "bsdf/bsdf.h"
+#include "medium/medium.h"
 #include "scene/scene.h"
 #include "world/light_choice.h"
 
@@ -27,6 +28,12 @@ struct world_shape {
     bool flip_normals;
 };
 
+// The media of both sides of a shape, SCENE_NONE for a vacuum.
+struct world_boundary {
+    bool parts; // it has media; else a ray that passes stays in the medium it is in
+    uint32_t interior, exterior;
+};
+
 struct world {
     const struct scene *scene;
     struct world_shape *shapes;        // by shape
@@ -41,6 +48,8 @@ struct world {
     bool shadow_rays_may_pass;  // some material lets rays straight through
     bool packets_pay;           // so few primitives that packets win whichever way the rays run
     bool tangents_matter;       // some material is anisotropic or perturbs its normal
+    struct medium *media;       // index: as in the scene; NULL: the scene has none
+    struct world_boundary *boundaries; // by shape; NULL: the scene has no media
     vec3 centre;                // bounding sphere of all shapes
     float radius;
     double accel_seconds;       // building it took
@@ -89,6 +98,9 @@ static inline vec3 surface_offset(const struct surface *s, vec3 w) {
 
 // The shadow ray from a surface to a sampled point of a light: t in (0, 1), or to infinity.
 struct ray world_shadow_ray(const struct surface *s, const struct light_sample *l);
+
+// The same from a point in space.
+struct ray world_ray_to_light(vec3 o, const struct light_sample *l);
 
 // Share of light that comes through along a shadow ray: 0 where anything opaque is in the way, or
 // more than `most` surfaces that let light straight through (negative: no limit).

@@ -7,6 +7,8 @@
 #include "fuzz.h"
 #include "integrator/integrator.h"
 #include "light/light.h"
+#include "medium/medium.h"
+#include "phase/phase.h"
 #include "sampler/sampler.h"
 #include "scene/scene.h"
 #include "sensor/sensor.h"
@@ -39,7 +41,8 @@ static const char *scene_fault(const struct scene *s) {
 // Reads the scene and prepares all that stands in it.
 static bool read_scene(const char *path) {
     const struct scene_options options = {
-        .registries = {&textures, &bsdfs, &lights, &sensors, &samplers, &filters, &integrators},
+        .registries = {&textures, &bsdfs, &lights, &sensors, &samplers, &filters, &integrators, &volumes, &phases,
+                       &media},
         .threads = 1};
     struct scene *s = scene_read(path, &options);
     if (!s)

@@ -16,7 +16,7 @@
 //   rounded towards zero, ours is below it by 0.0001 % +- 0.0044 %.
 //
 // Needs the shared data; takes the name of a case, to run that one alone. Left out: scenes with
-// participating media or the principled material.
+// the principled material.
 #include <limits.h>
 
 #include "image/ztest.h"
@@ -42,6 +42,8 @@ static const struct {
     {"floating_sphere", "test_directional", "direct", .half = true},
     {"instancing", "test_instancing", "path"},
     {"mesh_attributes", "test_mesh_attributes_1_face", "direct", .half = true},
+    {"participating_media", "test_homo_area_light", "volpath"},
+    {"participating_media", "test_homo_null_envmap", "volpath"},
     {"spot_light", "test_spot", "direct", .half = true},
 };
 

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes, one a line; each is volume/NAME.c.
+X(constvolume)
