@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume render: a picture from a scene file.
+#include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/progress.h"
+#include "driver/checkpoint.h"
 #include "driver/stop.h"
 #include "render_report.h"
 #include "subcommand.h"
@@ -13,7 +16,9 @@
 struct values {
     const char *scene, *output, *integrator, *sampler, *aovs;
     int spp, size[2], crop[4], max_depth, seed, threads;
-    bool variance, light_groups, paths, half, lenient, quiet, json;
+    double seconds, noise, checkpoint, preview;
+    const char *samples;
+    bool variance, light_groups, paths, half, lenient, quiet, json, resume;
     struct option_list defines;
 };
 
@@ -28,7 +33,24 @@ static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output), .argument = "OUT.exr",
      .help = "the picture to write", .required = true},
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
-     .help = "samples per pixel; 0: what the scene asks for", .def = "0"},
+     .help = "stop after N samples per pixel; 0: what the scene asks for", .def = "0"},
+    {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "SECONDS", .min = 0,
+     .max = 1e9, .help = "stop after so long: 90, 90s, 15m, 2h"},
+    {.name = "noise", .type = OPTION_NUMBER, .offset = AT(noise), .argument = "X", .min = 0,
+     .max = 1e3,
+     .help = "stop when the relative standard error of the pixels (root mean square)\n"
+             "is no more than X; looked at every 64 samples. Implies --variance"},
+    {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
+     .help = "render samples A to B-1 only, multiples of 64, for `relume merge`;\n"
+             "keeps a journal"},
+    {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
+     .min = 0, .max = 1e9,
+     .help = "every so often write what is done to OUT.exr.journal"},
+    {.name = "resume", .type = OPTION_FLAG, .offset = AT(resume),
+     .help = "go on from OUT.exr.journal if it is there, also to more samples than\n"
+             "before; keeps the journal"},
+    {.name = "preview", .type = OPTION_SECONDS, .offset = AT(preview), .argument = "SECONDS",
+     .min = 0, .max = 1e9, .help = "every so often write the picture so far"},
     {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
      .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
     {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
@@ -62,31 +84,41 @@ static const struct option_spec options[] = {
     OPTION_END,
 };
 
-static void show_progress(void *user, double done, const struct film *film) {
+struct listener {
+    struct progress progress;
+    struct checkpoint checkpoint;
+    bool quiet;
+};
+
+static void between_passes(void *user, double done, const struct film *film) {
+    struct listener *l = user;
     char note[64] = "";
+    checkpoint_tick(&l->checkpoint, film);
+    if (l->quiet || !progress_is_due(&l->progress))
+        return;
     const double noise = film_noise(film);
     if (noise >= 0)
         snprintf(note, sizeof note, "noise %.2f %%", 100 * noise);
-    progress_update(user, done, note);
+    progress_update(&l->progress, done, note);
 }
 
-static int render_and_write(const struct values *v, const char *command, struct job *job,
-                            struct progress *progress) {
+static int trace_and_write(const struct values *v, const char *command, struct job *job,
+                           struct film *film, struct listener *l) {
     struct render_outcome o = {.output = v->output};
-    struct image im = {0};
     const struct image_exr_options exr = {.half = v->half, .half_overflows = &o.overflows};
-    struct film *film = job_render(job, &o.render);
-    progress_end(progress);
-    o.rejected = film_rejected(film);
-    o.noise = film_noise(film);
-    bool written = job_image(job, film, &o.render, &im);
-    film_destroy(film);
+    const struct checkpoint_options keeping = {
+        .output = v->output, .command = command, .version = RELUME_VERSION, .seconds = v->checkpoint,
+        .preview_seconds = v->preview, .resume = v->resume, .exr = &exr,
+        .keep = v->checkpoint > 0 || v->resume || v->samples};
+    bool written = checkpoint_open(&l->checkpoint, &keeping, job, film);
     if (written) {
-        image_set_text(&im, "relume.command", command);
-        image_set_text(&im, "relume.version", RELUME_VERSION);
-        written = image_write_exr(v->output, &im, &exr);
+        job_trace(job, film, &o.render);
+        progress_end(&l->progress);
+        o.rejected = film_rejected(film);
+        written = checkpoint_finish(&l->checkpoint, film);
+        written = checkpoint_picture(&l->checkpoint, film, &o.render) && written;
     }
-    image_finish(&im);
+    checkpoint_close(&l->checkpoint);
     if (!written)
         return EXIT_FAILED;
     render_report_warnings(&o);
@@ -97,26 +129,41 @@ static int render_and_write(const struct values *v, const char *command, struct 
     return o.render.stopped ? EXIT_UNCONVERGED : EXIT_DONE;
 }
 
-static int run_job(const struct values *v, const char *command, const struct scene_define *defines) {
+static int run_job(const struct values *v, const char *command, const struct scene_define *defines,
+                   const uint64_t samples[2]) {
     char temp[4096];
-    struct progress progress;
+    struct listener listener = {.quiet = v->quiet};
     struct job job;
     if (!file_temp_name(v->output, temp, sizeof temp)) // know now, not after an hour
         return EXIT_FAILED;
-    progress_begin(&progress, "render", v->quiet);
+    progress_begin(&listener.progress, "render", v->quiet);
     const struct job_options job_options = {
         .scene = v->scene, .spp = v->spp, .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
         .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
         .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
-        .stop = stop_on_signals(), .progress = v->quiet ? NULL : show_progress, .user = &progress,
+        .samples = {samples[0], samples[1]}, .seconds = v->seconds, .noise = v->noise,
+        .stop = stop_on_signals(), .progress = between_passes, .user = &listener,
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
                     .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],
                     .height = v->size[1]}};
     if (!job_open(&job, &job_options))
         return EXIT_FAILED;
-    const int code = render_and_write(v, command, &job, &progress);
+    struct film *film = job_film(&job);
+    const int code = trace_and_write(v, command, &job, film, &listener);
+    film_destroy(film);
     job_close(&job);
     return code;
+}
+
+// "A:B", or NULL: all.
+static bool parse_samples(const char *text, uint64_t samples[2]) {
+    char rest;
+    samples[0] = samples[1] = 0;
+    if (!text || (sscanf(text, "%" SCNu64 ":%" SCNu64 "%c", &samples[0], &samples[1], &rest) == 2 &&
+                  samples[1] > samples[0] && !strchr(text, '-')))
+        return true;
+    log_error("--samples %s: expected A:B, the first sample and the one after the last", text);
+    return false;
 }
 
 // Whether a name given as an option stands for something.
@@ -133,14 +180,15 @@ static bool is_known(const struct registry *r, const char *name) {
 static int run(const void *values, const char *command) {
     const struct values *v = values;
     uint32_t aovs;
-    if (!is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
+    uint64_t samples[2];
+    if (!parse_samples(v->samples, samples) || !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
         (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
         return EXIT_USAGE;
     if (v->quiet)
         log_set_level(LOG_WARN);
     struct arena arena = {0};
     const struct scene_define *defines = defines_parse(&v->defines, &arena);
-    const int code = defines ? run_job(v, command, defines) : EXIT_USAGE;
+    const int code = defines ? run_job(v, command, defines, samples) : EXIT_USAGE;
     arena_finish(&arena);
     return code;
 }
@@ -158,12 +206,16 @@ const struct subcommand subcommand_render = {
     .entry = {.name = "render", .help = "make a picture from a scene file",
               .size = sizeof(struct values)},
     .options = {.options = options, .arguments = arguments,
-                .description = "Path traces SCENE. Stops at --spp samples per pixel, or on Ctrl-C "
-                               "with what is\ncomplete (exit code 3).",
+                .description = "Path traces SCENE. Stops at --spp, --time or --noise, whichever "
+                               "comes first, or on\nCtrl-C with what is complete. Exit code 3: a "
+                               "picture was written, but it was stopped\nor is noisier than "
+                               "--noise.",
                 .examples = "  relume render scene.xml -o out.exr --spp 256\n"
                             "  relume render scene.xml -o out.exr --size 640x360 --aov albedo,N,Z "
                             "--variance\n"
-                            "  relume render scene.xml -o lights.exr --light-groups\n",
+                            "  relume render scene.xml -o lights.exr --light-groups\n"
+                            "  relume render scene.xml -o ref.exr --noise 0.01 --checkpoint 60 "
+                            "--resume\n",
                 .more_help = print_registries},
     .run = run,
 };

@@ -45,8 +45,8 @@ void render_report_json(const struct job *job, const struct render_outcome *o) {
     json_add_count(j, "truncated_paths", (int64_t)t->truncated);
     json_add_count(j, "rejected_samples", (int64_t)o->rejected);
     json_add_count(j, "half_overflows", (int64_t)o->overflows);
-    if (o->noise >= 0)
-        json_add_number(j, "noise", o->noise);
+    if (t->noise >= 0)
+        json_add_number(j, "noise", t->noise);
     json_print(j, false);
     json_destroy(j);
 }

@@ -8,7 +8,6 @@ struct render_outcome {
     const char *output;
     struct render_result render;
     uint64_t rejected, overflows;
-    double noise; // negative: not measured
 };
 
 // What makes the picture worse than asked for.

@@ -14,6 +14,7 @@
 
 #include "base/file.h"
 #include "base/log.h"
+#include "base/mem.h"
 
 static json_t *own(struct json *v) {
     return (json_t *)v;
@@ -117,6 +118,14 @@ void json_print(const struct json *root, bool indented) {
     json_dumpf(see(root), stdout, JSON_REAL_PRECISION(15) | (indented ? JSON_INDENT(2) : 0));
     putchar('\n');
     fflush(stdout); // a reader of a long run wants each line when it is there
+}
+
+char *json_to_text(const struct json *root) {
+    const size_t flags = JSON_REAL_PRECISION(15) | JSON_ENCODE_ANY;
+    const size_t size = json_dumpb(see(root), NULL, 0, flags);
+    char *text = mem_array(size + 1, 1);
+    json_dumpb(see(root), text, size, flags);
+    return text;
 }
 
 static bool is_plain(const json_t *v) {

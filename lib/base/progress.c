@@ -21,9 +21,14 @@ void progress_format_seconds(double s, char *text, unsigned n) {
         snprintf(text, n, "%d h %02d min", (int)(s / 3600), (int)(s / 60) % 60);
 }
 
+bool progress_is_due(const struct progress *p) {
+    const double interval = p->terminal ? 0.2 : 10;
+    return !p->quiet && time_seconds() - p->last >= interval;
+}
+
 void progress_update(struct progress *p, double done, const char *note) {
-    const double now = time_seconds(), interval = p->terminal ? 0.2 : 10;
-    if (p->quiet || now - p->last < interval)
+    const double now = time_seconds();
+    if (!progress_is_due(p))
         return;
     p->last = now;
     char left[32] = "?";

@@ -12,6 +12,7 @@ struct progress {
 };
 
 void progress_begin(struct progress *p, const char *what, bool quiet);
+bool progress_is_due(const struct progress *p); // whether an update would show anything now
 // done: share from 0 to 1; note: more to show ("noise 1.2 %"), or "".
 void progress_update(struct progress *p, double done, const char *note);
 void progress_end(struct progress *p);

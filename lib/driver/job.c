@@ -5,10 +5,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/thread.h"
 #include "phase/phase.h"
 
-enum { DEFAULT_SPP = 64 };
+enum { DEFAULT_SPP = 64, MOST_SAMPLES = 1 << 30 };
 
 struct scene_registries job_registries(void) {
     return (struct scene_registries){&textures, &bsdfs, &lights, &sensors, &samplers, &filters,
@@ -75,21 +76,50 @@ static bool prepare_integrator(const struct job_options *o, struct scene *s, str
     return true;
 }
 
-static void set_render_options(struct job *job, const struct job_options *o) {
+// The nearest legal boundary of a range of samples.
+static uint64_t nearest_boundary(uint64_t sample) {
+    return (sample + FILM_BLOCK / 2) / FILM_BLOCK * FILM_BLOCK;
+}
+
+static bool choose_range(const uint64_t range[2], struct render_options *r, uint64_t *first) {
+    *first = range[0];
+    if (range[1] == 0)
+        return true;
+    if (range[0] % FILM_BLOCK == 0 && range[1] % FILM_BLOCK == 0 && range[0] < range[1] &&
+        range[1] <= MOST_SAMPLES) {
+        r->end = range[1];
+        return true;
+    }
+    const uint64_t a = nearest_boundary(range[0]), b = nearest_boundary(range[1]);
+    log_error("--samples %" PRIu64 ":%" PRIu64 " does not lie on multiples of %d; the nearest range "
+              "is %" PRIu64 ":%" PRIu64, range[0], range[1], FILM_BLOCK, a,
+              b > a ? b : a + FILM_BLOCK);
+    return false;
+}
+
+static bool set_render_options(struct job *job, const struct job_options *o) {
     const struct scene *s = job->scene;
+    const struct sampler_type *sampler = (const struct sampler_type *)s->sampler->type;
+    const int spp = o->spp ? o->spp : s->sample_count ? s->sample_count : DEFAULT_SPP;
+    const bool open_ended = !o->spp && (o->seconds > 0 || o->noise > 0) && !sampler->counted;
+    if (sampler->counted && !o->spp && (o->seconds > 0 || o->noise > 0))
+        log_warn("sampler %s lays out %d points, the scene's number of samples, and ends there; "
+                 "--spp asks for more, and --sampler sobol can always go on",
+                 s->sampler->type->name, spp);
     job->render = (struct render_options){
-        .sampler = (const struct sampler_type *)s->sampler->type,
-        .spp = (uint32_t)(o->spp ? o->spp : s->sample_count ? s->sample_count : DEFAULT_SPP),
-        .end = (uint64_t)(o->spp ? o->spp : s->sample_count ? s->sample_count : DEFAULT_SPP),
-        .seed = o->seed, .replicates = o->variance ? FILM_REPLICATES : 1, .threads = o->threads,
+        .sampler = sampler, .spp = (uint32_t)spp, .end = open_ended ? MOST_SAMPLES : (uint64_t)spp,
+        .seconds = o->seconds, .noise = o->noise, .seed = o->seed,
+        .replicates = job->film.variance ? FILM_REPLICATES : 1, .threads = o->threads,
         .stop = o->stop, .progress = o->progress, .user = o->user};
+    job->film.seed = o->seed;
+    return choose_range(o->samples, &job->render, &job->film.first);
 }
 
 static bool prepare(struct job *job, const struct job_options *o) {
     struct scene *s = job->scene;
     const struct sensor_type *sensor = sensor_type_of(s->sensors[0]);
-    job->film = (struct film_options){.alpha = s->film.alpha, .variance = o->variance,
-                                      .paths = o->paths};
+    job->film = (struct film_options){.alpha = s->film.alpha, .paths = o->paths,
+                                      .variance = o->variance || o->noise > 0};
     if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
         !choose_crop(o, &s->film, &job->film) || !prepare_integrator(o, s, job->world, &job->film) ||
         !sensor->prepare(s->sensors[0], s->film.width, s->film.height, s->centre) ||
@@ -99,8 +129,12 @@ static bool prepare(struct job *job, const struct job_options *o) {
     job->film.group_count = job->groups.count;
     job->film.group_names = job->groups.names;
     job->film.group_of_light = job->groups.of_light;
-    set_render_options(job, o);
-    return true;
+    for (size_t i = 0; i < o->reading.define_count; i++) {
+        const struct scene_define *d = &o->reading.defines[i];
+        job->defines_hash = file_hash(d->name, strlen(d->name) + 1, job->defines_hash);
+        job->defines_hash = file_hash(d->value, strlen(d->value) + 1, job->defines_hash);
+    }
+    return set_render_options(job, o);
 }
 
 bool job_open(struct job *job, const struct job_options *o) {
@@ -129,26 +163,29 @@ void job_close(struct job *job) {
     *job = (struct job){0};
 }
 
-struct film *job_render(struct job *job, struct render_result *result) {
+struct film *job_film(const struct job *job) {
+    return film_create(&job->film);
+}
+
+void job_trace(struct job *job, struct film *film, struct render_result *result) {
     const struct scene *s = job->scene;
-    struct film *film = film_create(&job->film);
     render(job->world, s->sensors[0], s->integrator, &job->filter, film, &job->render, result);
+}
+
+struct film *job_render(struct job *job, struct render_result *result) {
+    struct film *film = job_film(job);
+    job_trace(job, film, result);
     return film;
 }
 
 bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
                struct image *im) {
-    char hash[32];
-    if (result->samples == 0) {
+    if (film_samples(film) == 0) {
         log_error("stopped before every pixel had its first sample: there is no picture to write");
         return false;
     }
     if (!film_image(film, im))
         return false;
-    snprintf(hash, sizeof hash, "%016" PRIx64, job->scene->hash);
-    image_set_text(im, "relume.sceneHash", hash);
-    image_set_text(im, "relume.colourSpace", "linear Rec.709");
-    image_set_number(im, "relume.samples", (double)result->samples);
     image_set_number(im, "relume.seed", job->render.seed);
     image_set_number(im, "relume.seconds", result->seconds);
     return true;

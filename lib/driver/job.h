@@ -9,7 +9,10 @@
 struct job_options {
     const char *scene;
     struct scene_options reading; // registries are filled in by job_open
-    int spp;                      // 0: what the scene asks for, else 64
+    int spp;                      // 0: what the scene asks for, else 64; no limit where time or
+                                  // noise is one
+    uint64_t samples[2];          // first and end of a range on block boundaries; 0, 0: all
+    double seconds, noise;        // further limits (driver/render.h); 0: none
     int crop[4];                  // x0, y0, x1, y1; all 0: the scene's
     int max_depth;                // 0: the scene's
     uint32_t seed;
@@ -29,6 +32,7 @@ struct job {
     struct filter_sampler filter;
     struct film_options film;
     struct render_options render;
+    uint64_t defines_hash; // of the -D values
     double load_seconds; // reading and building
     uint64_t triangles;
 };
@@ -42,9 +46,13 @@ struct scene_define *defines_parse(const struct option_list *texts, struct arena
 // Reads and builds. false after an error message, with nothing to close.
 bool job_open(struct job *job, const struct job_options *options);
 void job_close(struct job *job);
-// Traces a picture with job->render; film_destroy it when done.
+// An empty film for the job's picture; film_destroy it when done.
+struct film *job_film(const struct job *job);
+// Traces what is missing in the film with job->render.
+void job_trace(struct job *job, struct film *film, struct render_result *result);
+// Both.
 struct film *job_render(struct job *job, struct render_result *result);
 
-// The picture with its layers, and what there is to say about it. false after an error message.
+// The picture with its layers. false after an error message.
 bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
                struct image *im);

@@ -27,4 +27,5 @@ const struct sampler_type sampler_multijitter = {
     .entry = {.name = "multijitter", .help = "correlated multi-jittered points (Kensler 2013)",
               .params = params, .size = sizeof(struct sampler_settings)},
     .next_1d = strata_next_1d, .next_2d = next_2d,
+    .counted = true,
 };

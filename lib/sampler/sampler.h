@@ -26,6 +26,7 @@ struct sampler_type {
     struct entry entry;
     float (*next_1d)(struct sampler *s); // in [0, 1)
     struct vec2 (*next_2d)(struct sampler *s);
+    bool counted;     // points are laid out for a number of samples: others for another number
     bool independent; // points are independent: the running variance is a true error estimate
 };
 

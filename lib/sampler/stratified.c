@@ -24,4 +24,5 @@ const struct sampler_type sampler_stratified = {
     .entry = {.name = "stratified", .help = "jittered grid", .params = params,
               .size = sizeof(struct sampler_settings)},
     .next_1d = strata_next_1d, .next_2d = next_2d,
+    .counted = true,
 };

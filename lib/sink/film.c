@@ -148,11 +148,30 @@ void film_restore(struct film *f, struct sums *sums) {
     reopen_block(f);
 }
 
-void film_pixel(const struct film *f, int x, int y, double *sums) {
+// Where the values of pixel (x, y) of the absolute grid begin in a node.
+static size_t pixel_values(const struct film *f, int x, int y) {
     const int tx = x / FILM_TILE - f->tile_x0, ty = y / FILM_TILE - f->tile_y0;
     const size_t tile = (size_t)(ty * f->tiles_x + tx);
     const size_t inside = (size_t)(y % FILM_TILE * FILM_TILE + x % FILM_TILE);
-    const size_t first = tile * f->tile_values + inside * f->layout.channels;
+    return tile * f->tile_values + inside * f->layout.channels;
+}
+
+void film_add_part(const struct film *whole, double *values, const struct film *part,
+                   const double *part_values) {
+    const struct film_options *o = &part->options;
+    const size_t row = (size_t)part->layout.channels;
+    assert(whole->layout.channels == part->layout.channels);
+    for (int y = o->y0; y < o->y1; y++)
+        for (int x = o->x0; x < o->x1; x++) {
+            double *to = values + pixel_values(whole, x, y);
+            const double *from = part_values + pixel_values(part, x, y);
+            for (size_t c = 0; c < row; c++)
+                to[c] += from[c];
+        }
+}
+
+void film_pixel(const struct film *f, int x, int y, double *sums) {
+    const size_t first = pixel_values(f, x, y);
     for (uint32_t c = 0; c < f->layout.channels; c++)
         sums[c] = sums_total(&f->sums, first + c, f->open[f->committed][first + c]);
 }

@@ -70,8 +70,12 @@ uint64_t film_samples(const struct film *f); // of every pixel
 uint64_t film_first(const struct film *f);   // number of the first sample of this run
 uint64_t film_next(const struct film *f);    // number of the sample that comes next
 
-// Numbers a pixel's sums take in nodes, tile by tile.
+// Doubles of a node of this film's sums: tile by tile, pixel by pixel.
 size_t film_values(const struct film *f);
+// Adds a node's values of a film `part` to those of a film `whole` that covers it; the two differ in
+// their crops only.
+void film_add_part(const struct film *whole, double *values, const struct film *part,
+                   const double *part_values);
 // The film goes on from these sums, which it takes over and leaves empty.
 void film_restore(struct film *f, struct sums *sums);
 const struct sums *film_sums(const struct film *f); // of finished blocks

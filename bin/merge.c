@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// relume merge: the exact union of pictures that were rendered apart.
+#include "driver/merge.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "base/log.h"
+#include "driver/film_head.h"
+#include "sink/journal.h"
+#include "subcommand.h"
+
+struct values {
+    struct option_list inputs;
+    const char *output;
+    bool half, quiet, json;
+};
+
+static const struct option_argument arguments[] = {
+    {"PART.exr", offsetof(struct values, inputs), "pictures with their journals beside them", false,
+     true},
+    {.name = NULL},
+};
+
+static const struct option_spec options[] = {
+    {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = offsetof(struct values, output),
+     .argument = "OUT.exr", .help = "the picture to write, with a journal of its own",
+     .required = true},
+    {.name = "half", .type = OPTION_FLAG, .offset = offsetof(struct values, half),
+     .help = "write 16-bit channels"},
+    OPTION_QUIET(struct values, quiet),
+    OPTION_JSON(struct values, json),
+    OPTION_END,
+};
+
+static bool write_journal(const char *output, const struct film_union *u) {
+    char path[4096];
+    struct sums_node node;
+    const bool is_short = film_short_block(u->film, &node);
+    if (snprintf(path, sizeof path, "%s.journal", output) >= (int)sizeof path) {
+        log_error("%s: name is too long", output);
+        return false;
+    }
+    struct journal *j = journal_create(path, u->head, film_sums(u->film), is_short ? &node : NULL);
+    journal_close(j);
+    return j != NULL;
+}
+
+static bool write_picture(const struct values *v, const struct film_union *u) {
+    struct image im = {0};
+    const struct image_exr_options exr = {.half = v->half};
+    bool written = film_image(u->film, &im);
+    if (written) {
+        film_head_label(u->head, u->film, &im);
+        written = image_write_exr(v->output, &im, &exr);
+    }
+    image_finish(&im);
+    return written;
+}
+
+static void report(const struct values *v, const struct film_union *u) {
+    const uint64_t samples = film_samples(u->film);
+    if (!v->quiet)
+        log_info("%s: %zu parts, %" PRIu64 " samples per pixel", v->output, v->inputs.count, samples);
+    if (v->json) {
+        struct json *j = json_new_object();
+        json_add_text(j, "output", v->output);
+        json_add_count(j, "parts", (int64_t)v->inputs.count);
+        json_add_count(j, "samples", (int64_t)samples);
+        if (film_noise(u->film) >= 0)
+            json_add_number(j, "noise", film_noise(u->film));
+        json_print(j, false);
+        json_destroy(j);
+    }
+}
+
+static int run(const void *values, const char *command) {
+    const struct values *v = values;
+    struct film_union u;
+    if (v->quiet)
+        log_set_level(LOG_WARN);
+    if (!merge_films(&u, v->inputs.items, v->inputs.count))
+        return EXIT_FAILED;
+    json_add_text(u.head, "command", command);
+    const bool written = write_journal(v->output, &u) && write_picture(v, &u);
+    if (written)
+        report(v, &u);
+    film_union_finish(&u);
+    return written ? EXIT_DONE : EXIT_FAILED;
+}
+
+const struct subcommand subcommand_merge = {
+    .entry = {.name = "merge", .help = "unite sample ranges, seeds and crops of one picture exactly",
+              .size = sizeof(struct values)},
+    .options = {.options = options, .arguments = arguments,
+                .description = "Unites pictures of one scene that were rendered with --samples, "
+                               "--seed or --crop, each\nwith its journal (render --samples, "
+                               "--checkpoint or --resume). The result has the\nsame bits as one "
+                               "run of all of it.",
+                .examples = "  relume render scene.xml -o a.exr --samples 0:128\n"
+                            "  relume render scene.xml -o b.exr --samples 128:256\n"
+                            "  relume merge a.exr b.exr -o whole.exr\n"},
+    .run = run,
+};

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver/checkpoint.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "base/file.h"
+#include "base/thread.h"
+
+static const double MOST_COST = 0.03; // share of the time that keeping may take
+
+// Takes up the sums of the journal that is there.
+static bool restore(struct checkpoint *c, struct film *film) {
+    struct json *head;
+    struct sums sums;
+    if (!file_exists(c->path)) {
+        log_info("%s: is not there; starting afresh", c->path);
+        return true;
+    }
+    if (!journal_read(c->path, &head, &sums))
+        return false;
+    const bool agrees = film_head_agrees(c->head, "this run", head, c->path, true);
+    if (agrees) {
+        film_restore(film, &sums);
+        log_info("%s: going on from %" PRIu64 " samples per pixel", c->path, film_samples(film));
+    }
+    json_destroy(head);
+    sums_finish(&sums);
+    return agrees;
+}
+
+bool checkpoint_open(struct checkpoint *c, const struct checkpoint_options *options,
+                     const struct job *job, struct film *film) {
+    struct sums_node node;
+    *c = (struct checkpoint){.options = *options, .job = job};
+    c->head = film_head_create(job, film, options->command, options->version);
+    if (snprintf(c->path, sizeof c->path, "%s.journal", options->output) >= (int)sizeof c->path) {
+        log_error("%s: name is too long", options->output);
+        return false;
+    }
+    if (options->resume && !restore(c, film))
+        return false;
+    if (options->keep) {
+        const bool is_short = film_short_block(film, &node);
+        c->journal = journal_create(c->path, c->head, film_sums(film), is_short ? &node : NULL);
+        if (!c->journal)
+            return false;
+    }
+    c->start = time_seconds();
+    c->journal_interval = options->seconds;
+    c->preview_interval = options->preview_seconds;
+    c->next_journal = c->start + c->journal_interval;
+    c->next_preview = c->start + c->preview_interval;
+    return true;
+}
+
+static bool update_journal(struct checkpoint *c, const struct film *film) {
+    struct sums_node node;
+    const bool is_short = film_short_block(film, &node);
+    if (!c->journal || journal_update(c->journal, film_sums(film), is_short ? &node : NULL))
+        return true;
+    journal_close(c->journal); // what it holds stays valid; the picture can still be had
+    c->journal = NULL;
+    return false;
+}
+
+// The next time, when doing it took so long.
+static double next_time(double *interval, double took) {
+    if (took / MOST_COST > *interval)
+        *interval = took / MOST_COST;
+    return time_seconds() + *interval;
+}
+
+void checkpoint_tick(struct checkpoint *c, const struct film *film) {
+    const double now = time_seconds();
+    if (c->options.seconds > 0 && c->journal && now >= c->next_journal) {
+        update_journal(c, film);
+        c->next_journal = next_time(&c->journal_interval, time_seconds() - now);
+    }
+    if (c->options.preview_seconds > 0 && now >= c->next_preview) {
+        const struct render_result so_far = {.seconds = now - c->start};
+        const double before = time_seconds();
+        checkpoint_picture(c, film, &so_far);
+        c->next_preview = next_time(&c->preview_interval, time_seconds() - before);
+    }
+}
+
+bool checkpoint_finish(struct checkpoint *c, const struct film *film) {
+    return update_journal(c, film);
+}
+
+void checkpoint_close(struct checkpoint *c) {
+    journal_close(c->journal);
+    json_destroy(c->head);
+    *c = (struct checkpoint){0};
+}
+
+bool checkpoint_picture(const struct checkpoint *c, const struct film *film,
+                        const struct render_result *result) {
+    struct image im = {0};
+    bool written = job_image(c->job, film, result, &im);
+    if (written) {
+        film_head_label(c->head, film, &im);
+        written = image_write_exr(c->options.output, &im, c->options.exr);
+    }
+    image_finish(&im);
+    return written;
+}
