@@ -18,21 +18,18 @@
 #include <immintrin.h>
 #endif
 
+#include "accel/few.h"
+#include "accel/placed_quadric.h"
 #include "base/log.h"
 #include "base/mem.h"
-#include "scene/quadric.h"
-
-struct quadric {
-    enum shape_kind kind;
-    struct transform to_world, to_object;
-};
 
 struct accel {
     RTCDevice device;
     RTCScene world;
     RTCScene *groups; // one per shapegroup
     uint32_t group_count, shape_count;
-    struct quadric *quadrics; // by shape index; NULL: the scene has none
+    struct placed_quadric *quadrics; // by shape index; NULL: the scene has none
+    struct few *few;                 // NULL: the scene is too large for it
     atomic_llong bytes;
 };
 
@@ -70,23 +67,10 @@ static bool count_bytes(void *user, ssize_t bytes, bool post) {
 // ---- quadrics ---------------------------------------------------------------------------------
 
 static void quadric_world_bounds(const struct RTCBoundsFunctionArguments *args) {
-    const struct quadric *q = args->geometryUserPtr;
-    double lo[3], hi[3], corner[3], p[3], least[3], most[3];
-    quadric_bounds(q->kind, lo, hi);
-    for (int c = 0; c < 8; c++) {
-        for (int i = 0; i < 3; i++)
-            corner[i] = c >> i & 1 ? hi[i] : lo[i];
-        transform_point(&q->to_world, corner, p);
-        for (int i = 0; i < 3; i++) {
-            least[i] = c == 0 || p[i] < least[i] ? p[i] : least[i];
-            most[i] = c == 0 || p[i] > most[i] ? p[i] : most[i];
-        }
-    }
-    float *b = &args->bounds_o->lower_x, *e = &args->bounds_o->upper_x;
-    for (int i = 0; i < 3; i++) { // one ulp outwards, since p was rounded
-        b[i] = nextafterf((float)least[i], -INFINITY);
-        e[i] = nextafterf((float)most[i], INFINITY);
-    }
+    float lo[3], hi[3];
+    placed_quadric_bounds(args->geometryUserPtr, lo, hi);
+    *args->bounds_o = (struct RTCBounds){.lower_x = lo[0], .lower_y = lo[1], .lower_z = lo[2],
+                                         .upper_x = hi[0], .upper_y = hi[1], .upper_z = hi[2]};
 }
 
 // Rays and hits of n lanes arrive as n values of each field in turn (Embree names these only in
@@ -103,13 +87,11 @@ static double lane(const struct lanes *l, enum ray_field field, unsigned i) {
     return (double)l->ray[(unsigned)field * l->n + i];
 }
 
-static bool quadric_hit(const struct quadric *q, const struct lanes *l, unsigned i, double *t) {
+static bool quadric_hit(const struct placed_quadric *q, const struct lanes *l, unsigned i,
+                        double *t) {
     const double o[3] = {lane(l, ORG_X, i), lane(l, ORG_Y, i), lane(l, ORG_Z, i)};
     const double d[3] = {lane(l, DIR_X, i), lane(l, DIR_Y, i), lane(l, DIR_Z, i)};
-    double object_o[3], object_d[3];
-    transform_point(&q->to_object, o, object_o);
-    transform_vector(&q->to_object, d, object_d);
-    return quadric_intersect(q->kind, object_o, object_d, lane(l, TNEAR, i), lane(l, TFAR, i), t);
+    return placed_quadric_hit(q, o, d, lane(l, TNEAR, i), lane(l, TFAR, i), t);
 }
 
 static void quadric_intersect_n(const struct RTCIntersectFunctionNArguments *args) {
@@ -139,7 +121,7 @@ static void quadric_occluded_n(const struct RTCOccludedFunctionNArguments *args)
 
 // ---- building ---------------------------------------------------------------------------------
 
-static RTCGeometry quadric_geometry(struct accel *a, struct quadric *q) {
+static RTCGeometry quadric_geometry(struct accel *a, struct placed_quadric *q) {
     RTCGeometry g = rtcNewGeometry(a->device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(g, 1);
     rtcSetGeometryUserData(g, q);
@@ -181,10 +163,8 @@ static bool attach_shape(struct accel *a, const struct scene *scene, uint32_t i)
     }
     if (!a->quadrics)
         a->quadrics = mem_array(scene->shape_count, sizeof *a->quadrics);
-    struct quadric *q = &a->quadrics[i];
-    q->kind = shape->kind;
-    q->to_world = shape->to_world;
-    if (!transform_invert(&shape->to_world, &q->to_object)) {
+    struct placed_quadric *q = &a->quadrics[i];
+    if (!placed_quadric_init(q, scene, i)) {
         log_error_at(shape->at, "shape %s has a singular to_world transform", shape->type);
         return false;
     }
@@ -230,6 +210,7 @@ struct accel *accel_create(const struct scene *scene, int threads) {
     rtcCommitScene(a->world);
     if (rtcGetDeviceError(a->device) != RTC_ERROR_NONE)
         goto fail;
+    a->few = few_create(scene);
     return a;
 fail:
     accel_destroy(a);
@@ -245,6 +226,7 @@ void accel_destroy(struct accel *a) {
         rtcReleaseScene(a->world);
     if (a->device)
         rtcReleaseDevice(a->device);
+    few_destroy(a->few);
     mem_free(a->groups);
     mem_free(a->quadrics);
     mem_free(a);
@@ -311,8 +293,44 @@ static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, in
     }
 }
 
+bool accel_mixes_packets(const struct accel *a) {
+    return a->few != NULL;
+}
+
+static void rays_from(const struct ray rays[ACCEL_PACKET], uint32_t active, struct accel_rays *p) {
+    float f[8][ACCEL_PACKET];
+    for (int i = 0; i < ACCEL_PACKET; i++) {
+        const struct ray *r = &rays[i];
+        for (int k = 0; k < 3; k++) {
+            f[k][i] = r->o[k];
+            f[3 + k][i] = r->d[k];
+        }
+        f[6][i] = r->tmin;
+        f[7][i] = active >> i & 1 ? r->tmax : -INFINITY;
+    }
+    *p = (struct accel_rays){{wide_load(f[0]), wide_load(f[1]), wide_load(f[2])},
+                             {wide_load(f[3]), wide_load(f[4]), wide_load(f[5])},
+                             wide_load(f[6]), wide_load(f[7])};
+}
+
+static void few_intersect16(const struct few *f, const struct ray rays[ACCEL_PACKET],
+                            uint32_t active, struct accel_hit hits[ACCEL_PACKET]) {
+    struct accel_rays r;
+    struct accel_hits h;
+    rays_from(rays, active, &r);
+    few_intersect(f, &r, &h);
+    for (int i = 0; i < ACCEL_PACKET; i++)
+        if (active >> i & 1)
+            hits[i] = (struct accel_hit){h.t[i], h.u[i], h.v[i], h.shape[i], h.primitive[i],
+                                         SCENE_NONE};
+}
+
 void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET], uint32_t active,
                        bool coherent, struct accel_hit hits[ACCEL_PACKET]) {
+    if (a->few) {
+        few_intersect16(a->few, rays, active, hits);
+        return;
+    }
     _Alignas(64) int valid[ACCEL_PACKET];
     struct RTCRayHit16 rh;
     packet_from(rays, active, valid, &rh.ray);
@@ -342,6 +360,11 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
 
 uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
                           uint32_t active, bool coherent) {
+    if (a->few) {
+        struct accel_rays r;
+        rays_from(rays, active, &r);
+        return few_occluded(a->few, &r);
+    }
     _Alignas(64) int valid[ACCEL_PACKET];
     struct RTCRay16 p;
     packet_from(rays, active, valid, &p);

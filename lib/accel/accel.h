@@ -7,6 +7,7 @@
 #pragma once
 
 #include "math/ray.h"
+#include "math/wide.h"
 #include "scene/scene.h"
 
 struct accel;
@@ -21,6 +22,17 @@ struct accel_hit {
 
 enum { ACCEL_PACKET = 16 };
 
+// A packet, lane by lane. A lane with tmax < tmin is not traced.
+struct accel_rays {
+    struct wide3 o, d;
+    wide tmin, tmax;
+};
+
+struct accel_hits {
+    wide t, u, v;
+    wide_uint shape, primitive;
+};
+
 // Builds over the scene's own vertex arrays, which must outlive it. NULL after an error message.
 struct accel *accel_create(const struct scene *scene, int threads);
 void accel_destroy(struct accel *a);
@@ -34,6 +46,9 @@ void accel_thread_init(void);
 
 bool accel_intersect(const struct accel *a, const struct ray *ray, struct accel_hit *hit);
 bool accel_occluded(const struct accel *a, const struct ray *ray);
+// Whether packets may hold any rays: what a ray hits does not depend on the others, and packets are
+// the faster way however they run.
+bool accel_mixes_packets(const struct accel *a);
 // Rays outside `active` (bit i: ray i) are not traced; their hits are left alone. coherent: the rays
 // run much the same way.
 void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET], uint32_t active,

@@ -14,8 +14,8 @@ static bool solve_quadratic(double a, double b, double c, double t[2]) {
         return false;
     const double q = -(b + copysign(sqrt(discriminant), b));
     const double t0 = q / a, t1 = q != 0 ? c / q : t0;
-    t[0] = fmin(t0, t1);
-    t[1] = fmax(t0, t1);
+    t[0] = t0 < t1 ? t0 : t1;
+    t[1] = t0 < t1 ? t1 : t0;
     return true;
 }
 
@@ -32,8 +32,8 @@ static bool sphere_roots(const double o[3], const double d[3], double t[2]) {
     const double c = dot3(o, o) - 1;
     const double q = -(b + copysign(sqrt(discriminant), b));
     const double t0 = q / a, t1 = q != 0 ? c / q : t0;
-    t[0] = fmin(t0, t1);
-    t[1] = fmax(t0, t1);
+    t[0] = t0 < t1 ? t0 : t1;
+    t[1] = t0 < t1 ? t1 : t0;
     return true;
 }
 
