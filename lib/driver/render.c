@@ -28,35 +28,42 @@ struct pass {
     _Atomic double stop_time; // when the stop was first seen; 0: not yet
 };
 
-// The sixteen paths of one packet for one sample.
-static void start_paths(const struct pass *p, int x0, int y0, uint32_t sample,
-                        struct path_start starts[SINK_LANES], float weights[SINK_LANES]) {
+// Groups of sixteen pixels that are traced in one call.
+struct batch {
+    uint32_t count, most; // lanes
+    struct path_start starts[SINK_MOST_LANES];
+    float weights[SINK_MOST_LANES];
+};
+
+// Adds the sixteen paths of one 4x4 block for one sample.
+static void start_paths(const struct pass *p, struct worker *w, int x0, int y0, uint32_t sample,
+                        struct batch *b) {
     const struct sensor_type *sensor = sensor_type_of(p->sensor);
     const struct render_options *o = p->options;
+    struct sink *sink = w->ctx.sink;
     for (int i = 0; i < SINK_LANES; i++) {
+        const uint32_t lane = b->count++;
         const int x = x0 + i % PACKET_SIDE, y = y0 + i / PACKET_SIDE;
         struct sampler s = sampler_start(o->sampler, (uint32_t)x, (uint32_t)y, sample, o->spp,
                                          o->replicates, o->seed);
-        const struct vec2 d = filter_sample(p->filter, sampler_2d(&s), &weights[i]);
+        const struct vec2 d = filter_sample(p->filter, sampler_2d(&s), &b->weights[lane]);
         const struct vec2 lens = sampler_2d(&s);
         sensor->ray(p->sensor->data, (float)x + 0.5f + d.x, (float)y + 0.5f + d.y, lens,
-                    &starts[i].ray);
-        starts[i].sampler = s;
+                    &b->starts[lane].ray);
+        b->starts[lane].sampler = s;
+        film_view_lane(w->view, (int)lane, x, y, sample);
+        sink->type->begin(sink, (int)lane);
     }
 }
 
-static void trace_packet(const struct pass *p, struct worker *w, int x0, int y0, uint32_t sample) {
-    struct path_start starts[SINK_LANES];
-    float weights[SINK_LANES];
+static void trace_batch(const struct pass *p, struct worker *w, struct batch *b) {
     struct sink *sink = w->ctx.sink;
-    start_paths(p, x0, y0, sample, starts, weights);
-    for (int i = 0; i < SINK_LANES; i++) {
-        film_view_lane(w->view, i, x0 + i % PACKET_SIDE, y0 + i / PACKET_SIDE, sample);
-        sink->type->begin(sink, i);
-    }
-    integrator_type_of(p->integrator)->trace(p->integrator->data, &w->ctx, starts);
-    for (int i = 0; i < SINK_LANES; i++)
-        sink->type->end(sink, i, weights[i]);
+    w->ctx.lanes = b->count;
+    if (b->count)
+        integrator_type_of(p->integrator)->trace(p->integrator->data, &w->ctx, b->starts);
+    for (uint32_t i = 0; i < b->count; i++)
+        sink->type->end(sink, (int)i, b->weights[i]);
+    b->count = 0;
 }
 
 // Whether the pass is to be given up: a stop was asked for, and finishing takes too long.
@@ -74,6 +81,8 @@ static bool give_up(struct pass *p) {
 static void trace_tile(void *ctx, size_t tile, int index) {
     struct pass *p = ctx;
     struct worker *w = &p->workers[index];
+    const uint32_t most = integrator_type_of(p->integrator)->most_lanes;
+    struct batch batch = {.count = 0, .most = most ? most : SINK_LANES};
     int x0, y0, x1, y1;
     accel_thread_init();
     if (give_up(p))
@@ -82,8 +91,12 @@ static void trace_tile(void *ctx, size_t tile, int index) {
     film_view_clip(w->view, PACKET_SIDE, &x0, &y0, &x1, &y1);
     for (uint32_t s = p->first; s < p->first + p->count; s++) {
         for (int y = y0; y < y1; y += PACKET_SIDE)
-            for (int x = x0; x < x1; x += PACKET_SIDE)
-                trace_packet(p, w, x, y, s);
+            for (int x = x0; x < x1; x += PACKET_SIDE) {
+                start_paths(p, w, x, y, s, &batch);
+                if (batch.count == batch.most)
+                    trace_batch(p, w, &batch);
+            }
+        trace_batch(p, w, &batch); // a pixel's samples are added in order
         if (give_up(p))
             return;
     }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrators: the order in which a path is sampled, connected to lights and handed to the sink.
 //
-// A group of 16 paths that start side by side is traced together, so that camera and shadow rays
+// Paths are traced together by groups of 16 that start side by side, so that camera and shadow rays
 // may run as packets; each lane's random numbers and contributions are those it would have alone.
+// What a group gives may not depend on the other groups of a call.
 // Depth counts path edges as Mitsuba does: max_depth 1 sees emitters only, 2 adds direct light,
 // -1 is unlimited. A surface that is passed straight through (a mask) ends an edge too, as there.
 #pragma once
@@ -24,6 +25,7 @@ struct trace_context {
     const struct response *response;
     struct sink *sink;
     struct closure_stack *stack;
+    uint32_t lanes; // of this call: a multiple of SINK_LANES, at most what the type declares
     uint64_t rays, shadow_rays, paths;
     uint64_t truncated; // paths that met the hard cap on events: the picture is too dark there
 };
@@ -42,8 +44,8 @@ struct integrator_type {
     struct entry entry;
     // Checks the parameters. false after an error message. NULL: nothing to do.
     bool (*prepare)(struct object *self, struct integrator_wants *wants);
-    void (*trace)(const void *data, struct trace_context *ctx,
-                  const struct path_start starts[SINK_LANES]);
+    void (*trace)(const void *data, struct trace_context *ctx, const struct path_start *starts);
+    uint32_t most_lanes; // of one call; 0: SINK_LANES
 };
 
 // How lights are chosen, for integrators that sample them: an int, to be passed on by prepare.

@@ -2,8 +2,8 @@
 // Path tracing (Kajiya 1986) with next event estimation, multiple importance sampling (Veach and
 // Guibas 1995) and Russian roulette.
 //
-// Sixteen paths advance together, vertex by vertex, so that the rays that run side by side, those of
-// the camera and the first shadow rays, are traced as packets; later ones are single.
+// Many paths advance together, vertex by vertex, so that rays are there to fill packets: those that
+// run side by side, of the camera and the first shadow rays, and all where a scene is small.
 #include "integrator/vertex.h"
 
 struct path {
@@ -43,7 +43,10 @@ enum {
     DRAW_ROULETTE = 6,
 };
 
-enum { LEAST_IN_PACKET = 4 }; // rays: fewer are faster one by one
+enum {
+    LEAST_IN_PACKET = 4, // rays: fewer are faster one by one
+    MOST_LANES = SINK_MOST_LANES,
+};
 
 struct lane {
     struct ray ray;
@@ -178,104 +181,141 @@ static void start(struct trace_context *ctx, struct lane *l, const struct path_s
     l->eta2 = 1;
     l->from = (struct path_origin){.p = from->ray.o, .delta = true};
     l->sampler = from->sampler;
-    l->shadow.pending = false;
     l->events = 0;
     l->alive = true;
     l->first_done = false;
     ctx->paths++;
 }
 
-// Whether the pending shadow rays run so much the same way that a packet beats single rays: packets
-// were three times faster towards a small light and half as fast towards a whole sky.
-static bool run_together(const struct lane lanes[SINK_LANES], uint32_t pending) {
+// The paths that are traced together, and which of them are still under way, ascending.
+struct wave {
+    struct lane lanes[MOST_LANES];
+    uint16_t alive[MOST_LANES];
+    uint32_t count;
+};
+
+// Up to sixteen lanes of a wave, by index.
+struct packet {
+    const uint16_t *lanes;
+    int count;
+};
+
+// The packet that begins at `first` of a list. Embree's packets may return other hits when other rays
+// are in them, so these are 4x4 blocks of pixels, always the same; without it any lanes will do.
+static struct packet packet_at(const struct world *w, const uint16_t *list, uint32_t count,
+                               uint32_t first) {
+    struct packet p = {list + first, 0};
+    const uint32_t left = count - first;
+    const int most = left < SINK_LANES ? (int)left : SINK_LANES;
+    if (accel_mixes_packets(w->accel))
+        p.count = most;
+    else
+        while (p.count < most && p.lanes[p.count] / SINK_LANES == p.lanes[0] / SINK_LANES)
+            p.count++;
+    return p;
+}
+
+// Whether shadow rays run so much the same way that a packet beats single rays: packets were three
+// times faster towards a small light and half as fast towards a whole sky.
+static bool run_together(const struct lane *lanes, const struct packet *p) {
     const float together = 0.9f; // length of the mean direction
     vec3 sum = {0};
-    for (int i = 0; i < SINK_LANES; i++)
-        if (pending >> i & 1)
-            sum += lanes[i].shadow.contribution.wi;
-    return length2(sum) > sqr(together * (float)__builtin_popcount(pending));
+    for (int i = 0; i < p->count; i++)
+        sum += lanes[p->lanes[i]].shadow.contribution.wi;
+    return length2(sum) > sqr(together * (float)p->count);
 }
 
-static void finish_as_packet(struct trace_context *ctx, struct lane lanes[SINK_LANES],
-                             uint32_t pending, bool together) {
-    struct ray rays[ACCEL_PACKET];
+static void finish_as_packet(struct trace_context *ctx, struct lane *lanes, const struct packet *p,
+                             bool together) {
+    struct ray rays[SINK_LANES];
+    const uint32_t active = (1u << p->count) - 1;
     for (int i = 0; i < SINK_LANES; i++)
-        rays[i] = lanes[i].shadow.ray;
-    const uint32_t blocked = accel_occluded16(ctx->world->accel, rays, pending, together);
-    ctx->shadow_rays += (uint64_t)__builtin_popcount(pending);
-    for (int i = 0; i < SINK_LANES; i++)
-        if (pending >> i & 1 && !(blocked >> i & 1))
-            sink_add(ctx->sink, i, &lanes[i].shadow.contribution);
+        rays[i] = lanes[p->lanes[i < p->count ? i : 0]].shadow.ray;
+    const uint32_t blocked = accel_occluded16(ctx->world->accel, rays, active, together);
+    ctx->shadow_rays += (uint64_t)p->count;
+    for (int i = 0; i < p->count; i++)
+        if (!(blocked >> i & 1))
+            sink_add(ctx->sink, p->lanes[i], &lanes[p->lanes[i]].shadow.contribution);
 }
 
-// The shadow rays of one vertex of all lanes. Packets depend on the lanes alone, never on a clock.
-static void finish_shadows(struct trace_context *ctx, struct lane lanes[SINK_LANES], bool first) {
+// The shadow rays of one vertex of the lanes listed. Packets depend on the lanes alone, never on a
+// clock.
+static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const uint16_t *list,
+                           uint32_t count, bool first) {
     const struct world *w = ctx->world;
-    uint32_t pending = 0;
-    for (int i = 0; i < SINK_LANES; i++)
-        pending |= (uint32_t)lanes[i].shadow.pending << i;
-    const bool together = first && run_together(lanes, pending);
-    const bool many = __builtin_popcount(pending) >= LEAST_IN_PACKET;
-    if (!w->shadow_rays_may_pass && (together || (w->packets_pay && many)))
-        finish_as_packet(ctx, lanes, pending, together);
-    else
-        for (int i = 0; i < SINK_LANES; i++)
-            if (pending >> i & 1)
-                vertex_finish_light(ctx, i, &lanes[i].shadow);
-    for (int i = 0; i < SINK_LANES; i++)
-        lanes[i].shadow.pending = false;
+    struct packet p;
+    for (uint32_t i = 0; i < count; i += (uint32_t)p.count) {
+        p = packet_at(w, list, count, i);
+        const bool together = first && run_together(lanes, &p);
+        const bool pays = together || accel_mixes_packets(w->accel) ||
+                          (w->packets_pay && p.count >= LEAST_IN_PACKET);
+        if (!w->shadow_rays_may_pass && pays)
+            finish_as_packet(ctx, lanes, &p, together);
+        else
+            for (int k = 0; k < p.count; k++)
+                vertex_finish_light(ctx, p.lanes[k], &lanes[p.lanes[k]].shadow);
+    }
 }
 
-// The next hits of all living lanes: the camera's rays as a packet, later ones where that pays.
-static void find_hits(struct trace_context *ctx, const struct lane lanes[SINK_LANES], bool camera,
-                      struct accel_hit hits[SINK_LANES]) {
+// The next hits of a packet's lanes: the camera's rays together, later ones where that pays.
+static void find_hits(struct trace_context *ctx, const struct lane *lanes, const struct packet *p,
+                      bool camera, struct accel_hit hits[SINK_LANES]) {
     const struct accel *accel = ctx->world->accel;
-    uint32_t alive = 0;
-    for (int i = 0; i < SINK_LANES; i++)
-        alive |= (uint32_t)lanes[i].alive << i;
-    const int count = __builtin_popcount(alive);
-    ctx->rays += (uint64_t)count;
-    if (camera || (ctx->world->packets_pay && count >= LEAST_IN_PACKET)) {
+    ctx->rays += (uint64_t)p->count;
+    if (camera || accel_mixes_packets(accel) ||
+        (ctx->world->packets_pay && p->count >= LEAST_IN_PACKET)) {
         struct ray rays[SINK_LANES];
         for (int i = 0; i < SINK_LANES; i++)
-            rays[i] = lanes[i].ray;
-        accel_intersect16(accel, rays, alive, camera, hits);
+            rays[i] = lanes[p->lanes[i < p->count ? i : 0]].ray;
+        accel_intersect16(accel, rays, (1u << p->count) - 1, camera, hits);
         return;
     }
-    for (int i = 0; i < SINK_LANES; i++)
-        if (lanes[i].alive)
-            accel_intersect(accel, &lanes[i].ray, &hits[i]);
+    for (int i = 0; i < p->count; i++)
+        accel_intersect(accel, &lanes[p->lanes[i]].ray, &hits[i]);
 }
 
-static void trace(const void *data, struct trace_context *ctx,
-                  const struct path_start starts[SINK_LANES]) {
-    const struct path *p = data;
-    struct lane lanes[SINK_LANES];
-    struct accel_hit hits[SINK_LANES];
-    for (int i = 0; i < SINK_LANES; i++)
-        start(ctx, &lanes[i], &starts[i]);
-    if (!may_contribute(p, 0))
-        return;
-    for (bool any = true, camera = true; any; camera = false) {
-        any = false;
-        find_hits(ctx, lanes, camera, hits);
-        for (int i = 0; i < SINK_LANES; i++) {
-            struct lane *l = &lanes[i];
-            if (!l->alive)
-                continue;
-            if (hits[i].shape == SCENE_NONE)
+// One vertex of every living lane.
+static void advance(const struct path *p, struct trace_context *ctx, struct wave *w, bool camera) {
+    uint16_t pending[MOST_LANES];
+    uint32_t survivors = 0, tests = 0;
+    struct packet packet;
+    for (uint32_t first = 0; first < w->count; first += (uint32_t)packet.count) {
+        struct accel_hit hits[SINK_LANES];
+        packet = packet_at(ctx->world, w->alive, w->count, first);
+        find_hits(ctx, w->lanes, &packet, camera, hits);
+        for (int k = 0; k < packet.count; k++) {
+            const uint16_t i = packet.lanes[k];
+            struct lane *l = &w->lanes[i];
+            l->shadow.pending = false;
+            if (hits[k].shape == SCENE_NONE)
                 leave_scene(p, ctx, i, l);
             else
-                shade(p, ctx, i, l, &hits[i]);
-            any |= l->alive;
+                shade(p, ctx, i, l, &hits[k]);
+            if (l->shadow.pending)
+                pending[tests++] = i;
+            if (l->alive)
+                w->alive[survivors++] = i; // never ahead of what is read
         }
-        finish_shadows(ctx, lanes, camera);
     }
+    w->count = survivors;
+    finish_shadows(ctx, w->lanes, pending, tests, camera);
+}
+
+static void trace(const void *data, struct trace_context *ctx, const struct path_start *starts) {
+    const struct path *p = data;
+    struct wave w;
+    for (w.count = 0; w.count < ctx->lanes; w.count++) {
+        start(ctx, &w.lanes[w.count], &starts[w.count]);
+        w.alive[w.count] = (uint16_t)w.count;
+    }
+    if (may_contribute(p, 0))
+        for (bool camera = true; w.count; camera = false)
+            advance(p, ctx, &w, camera);
 }
 
 const struct integrator_type integrator_path = {
     .entry = {.name = "path",
               .help = "path tracing with next event estimation and MIS (Kajiya 1986; Veach 1995)",
               .params = params, .size = sizeof(struct path)},
-    .prepare = prepare, .trace = trace,
+    .prepare = prepare, .trace = trace, .most_lanes = MOST_LANES,
 };

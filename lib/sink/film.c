@@ -34,7 +34,7 @@ struct film_view {
         float alpha;
         struct sink_surface first;
         bool has_first, is_first_sample;
-    } lanes[SINK_LANES];
+    } lanes[SINK_MOST_LANES];
     spectrum *slots; // [lane][slot]: what the sample has gathered
 };
 
@@ -272,7 +272,7 @@ struct film_view *film_view_create(struct film *f) {
     v->sink = (struct sink){&view_type, f->options.aovs != 0};
     v->film = f;
     v->sums = mem_array(f->tile_values, sizeof *v->sums);
-    v->slots = mem_array((size_t)SINK_LANES * f->layout.slots, sizeof *v->slots);
+    v->slots = mem_array((size_t)SINK_MOST_LANES * f->layout.slots, sizeof *v->slots);
     return v;
 }
 

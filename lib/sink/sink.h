@@ -5,7 +5,8 @@
 // from, and the sink decides what becomes of them: the film multiplies by emission now; a tensor
 // bins by source or material and leaves that for later.
 //
-// Sixteen samples (lanes) of different pixels run side by side; contributions of one lane arrive
+// Groups of sixteen samples (lanes) of different pixels run side by side, SINK_MOST_LANES lanes at
+// most; contributions of one lane arrive
 // between its begin and its end, in an order that depends on that lane's path alone.
 #pragma once
 
@@ -14,7 +15,7 @@
 #include "bsdf/bsdf.h"
 #include "math/vec.h"
 
-enum { SINK_LANES = 16 };
+enum { SINK_LANES = 16, SINK_MOST_LANES = 256 };
 
 struct contribution {
     spectrum weight;   // of the path: scattering, cosines, 1/pdf, MIS, roulette; no emission
