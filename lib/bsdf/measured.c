@@ -171,7 +171,7 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
     out->pdf_sa = pdf_m * pdf_s / jacobian(c, m, u_m.x);
     if (!(cos_theta(out->wi) > 0) || !(out->pdf_sa > 0))
         return false;
-    out->weight = spectrum_clamp(value(c, u_m, s) / spectrum_grey(out->pdf_sa), 0, 1e30f);
+    out->weight = spectrum_clamp(value(c, u_m, s) * (1 / out->pdf_sa), 0, 1e30f);
     out->eta = 1;
     out->lobe = LOBE_GLOSSY | LOBE_REFLECTION;
     return true;
