@@ -24,7 +24,7 @@ struct volume_path {
         {"strict_normals", PARAM_BOOL, offsetof(struct volume_path, strict_normals),               \
          .def = "false", .unit = "",                                                               \
          .help = "drop directions on which shading and geometric normal disagree"},                \
-        INTEGRATOR_IGNORED
+        {"version", PARAM_IGNORED}, INTEGRATOR_IGNORED
 
 void volume_path_trace(const void *data, struct trace_context *ctx,
                        const struct path_start starts[SINK_LANES]);

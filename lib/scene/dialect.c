@@ -105,6 +105,12 @@ static void upgrade(struct reader *r, struct xml_node *node) {
         xml_set(up, "value", "y", r->arena);
         xml_append(node, up);
     }
+    if (strcmp(node->tag, "volume") == 0 && type && strcmp(type, "gridvolume") == 0) {
+        struct xml_node *box = xml_new("boolean", node->at, r->arena); // version 3 ignores the file's
+        xml_set(box, "name", "use_grid_bbox", r->arena);
+        xml_set(box, "value", "true", r->arena);
+        xml_append(node, box);
+    }
     const char *name = xml_get(node, "name");
     if (name && strcmp(node->tag, "default") != 0)
         xml_set(node, "name", snake_case(name, r->arena), r->arena);
