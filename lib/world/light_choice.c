@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "world/light_choice.h"
 
+#include <float.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -15,7 +16,7 @@ const char *const light_choice_modes[] = {"auto", "tree", "power", "uniform", NU
 
 static float power_of(const struct world_light *l) {
     const float power = l->type->power(l->data);
-    return power > 0 ? minf(power, 1e30f) : 0;
+    return power > 0 ? minf(power, FLT_MAX) : 0;
 }
 
 // Half of the choice is uniform: power alone can starve a weak light that stands near.
