@@ -17,6 +17,19 @@ static inline float largest(vec3 a) {
     return maxf(fabsf(a[0]), maxf(fabsf(a[1]), fabsf(a[2])));
 }
 
+// The same ray with a direction whose largest component is in [1, 2): the factor is a power of two,
+// so nothing is rounded.
+static inline struct ray ray_ordinary(struct ray r) {
+    const float l = largest(r.d);
+    if (!(l > 0) || !(l < INFINITY))
+        return r;
+    const int e = ilogbf(l);
+    r.d = v3(ldexpf(r.d[0], -e), ldexpf(r.d[1], -e), ldexpf(r.d[2], -e));
+    r.tmin = ldexpf(r.tmin, e);
+    r.tmax = ldexpf(r.tmax, e);
+    return r;
+}
+
 // -1, 0 or 1 in each lane
 static inline vec3 sign(vec3 a) {
     return __builtin_convertvector((a < 0) - (a > 0), vec3);

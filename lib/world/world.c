@@ -198,6 +198,7 @@ spectrum world_transmittance(const struct world *w, struct ray ray, int most,
     for (int i = 0; i <= limit; i++) {
         struct accel_hit hit;
         struct surface s;
+        ray = ray_ordinary(ray); // Embree loses (u, v) where edges x distance x |d| is below 1e-18
         if (!accel_intersect(w->accel, &ray, &hit))
             return through;
         if (i == limit)
@@ -214,8 +215,10 @@ spectrum world_transmittance(const struct world *w, struct ray ray, int most,
             return through;
         const vec3 end = ray.o + ray.tmax * ray.d;
         ray.o = surface_offset(&s, ray.d);
-        if (ray.tmax < INFINITY)
+        if (ray.tmax < INFINITY) {
             ray.d = end - ray.o;
+            ray.tmax = 1;
+        }
     }
     return spectrum_grey(0);
 }
