@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "curve/incremental.h"
+
+#include <math.h>
+
+static double urgency(const struct incremental *s, const double *wanted, uint32_t i) {
+    return fabs(wanted[i] - s->effective[i]) * (s->weight ? s->weight[i] : 1);
+}
+
+// Restores the heap below `root` whose top is the least urgent of the kept terms.
+static void sift_down(const struct incremental *s, const double *wanted, uint32_t *heap, size_t n,
+                      size_t root) {
+    for (;;) {
+        size_t least = root;
+        for (size_t child = 2 * root + 1; child <= 2 * root + 2 && child < n; child++)
+            if (urgency(s, wanted, heap[child]) < urgency(s, wanted, heap[least]))
+                least = child;
+        if (least == root)
+            return;
+        const uint32_t t = heap[root];
+        heap[root] = heap[least];
+        heap[least] = t;
+        root = least;
+    }
+}
+
+// The most urgent terms that are off at all, as a heap.
+static size_t choose(const struct incremental *s, const double *wanted, size_t most,
+                     uint32_t *heap) {
+    size_t n = 0;
+    for (uint32_t i = 0; i < s->count && most > 0; i++) {
+        if (wanted[i] == s->effective[i])
+            continue;
+        if (n < most) {
+            heap[n++] = i;
+            for (size_t k = n == most ? n / 2 : 0; k-- > 0;)
+                sift_down(s, wanted, heap, n, k);
+        } else if (urgency(s, wanted, i) > urgency(s, wanted, heap[0])) {
+            heap[0] = i;
+            sift_down(s, wanted, heap, n, 0);
+        }
+    }
+    for (size_t k = n / 2; k-- > 0;)
+        sift_down(s, wanted, heap, n, k);
+    return n;
+}
+
+size_t incremental_step(struct incremental *s, const double *wanted, size_t most, uint32_t *index,
+                        double *difference, uint32_t *order) {
+    const size_t n = choose(s, wanted, most, order);
+    for (size_t left = n; left > 0; left--) { // the least urgent goes to the end
+        const uint32_t i = order[0];
+        index[left - 1] = i;
+        difference[left - 1] = wanted[i] - s->effective[i];
+        order[0] = order[left - 1];
+        sift_down(s, wanted, order, left - 1, 0);
+    }
+    for (size_t k = 0; k < n; k++)
+        s->effective[index[k]] = wanted[index[k]];
+    return n;
+}

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Models that can be turned into the editable form, one a line; each is curve/NAME.c.
+X(ashikhminfresnel)
+X(ashikhminratio)
+X(ashikhminshirley)
+X(blinnphong)
+X(cooktorrance)
+X(freehand)
+X(halfdifference)
+X(homomorphic)
+X(lightview)
+X(microfacet)
+X(orennayar)
+X(phong)
+X(schlick)
+X(ward)
