@@ -37,9 +37,8 @@ static spectrum positive(spectrum s) {
 static bool collide_grey(const struct medium *m, vec3 p, float majorant, struct flight *f) {
     struct medium_point c;
     medium_at(m, p, &c);
-    const float inverse = 1 / majorant;
     if (m->emits)
-        f->emitted += f->beta * c.emission * (inverse / flight_ratio(f->ratio));
+        f->emitted += f->beta * c.emission / (majorant * flight_ratio(f->ratio));
     const spectrum sigma_n = positive(majorant * spectrum_grey(1) - c.sigma_t);
     const float scatter = spectrum_mean(f->beta * c.sigma_s);
     const float null = spectrum_mean(f->beta * sigma_n);
@@ -49,7 +48,8 @@ static bool collide_grey(const struct medium *m, vec3 p, float majorant, struct 
         return false;
     }
     const bool scatters = null == 0 || (scatter > 0 && rng_float(f->rng) * sum < scatter);
-    f->beta *= scatters ? c.sigma_s * (sum / (scatter * majorant)) : sigma_n * (sum / (null * majorant));
+    f->beta *= (scatters ? c.sigma_s : sigma_n) / majorant;
+    f->beta *= sum / (scatters ? scatter : null);
     return scatters;
 }
 
@@ -101,10 +101,9 @@ static bool collide_spectral(const struct medium *m, vec3 p, spectrum majorant, 
     struct medium_point c;
     medium_at(m, p, &c);
     const int lane = f->lane;
-    const float inverse = 1 / majorant[lane];
-    f->ratio *= majorant * inverse;
+    f->ratio *= majorant / majorant[lane];
     if (m->emits)
-        f->emitted += f->beta * c.emission * (inverse / flight_ratio(f->ratio));
+        f->emitted += f->beta * c.emission / (majorant[lane] * flight_ratio(f->ratio));
     const spectrum sigma_n = positive(majorant - c.sigma_t);
     const spectrum sum = c.sigma_s + sigma_n;
     if (!(sum[lane] > 0)) {
@@ -114,7 +113,7 @@ static bool collide_spectral(const struct medium *m, vec3 p, spectrum majorant, 
     const float share = c.sigma_s[lane] / sum[lane];
     const bool scatters = share == 1 || rng_float(f->rng) < share;
     const spectrum chosen = scatters ? c.sigma_s : sigma_n;
-    f->beta *= chosen * (inverse * sum[lane] / chosen[lane]);
+    f->beta *= chosen / majorant[lane] * (sum[lane] / chosen[lane]);
     for (int k = 0; k < SPECTRUM_LANES; k++)
         f->ratio[k] = sum[k] > 0 ? f->ratio[k] * (chosen[k] / sum[k]) * (sum[lane] / chosen[lane]) : 0;
     return scatters;
