@@ -31,16 +31,21 @@ static inline double oren_nayar_qualitative(const struct oren_nayar_angles *a, d
            0.45 * s2 / (s2 + 0.09) * fmax(a->cos_phi, 0) * a->sin_alpha * a->tan_beta;
 }
 
-// The full model with one interreflection, eq. 27-29.
-static inline double oren_nayar_full(const struct oren_nayar_angles *a, double sigma, double rho) {
+// The full model, eq. 27 and 28: light reflected once. Where sigma is great, the published sum falls
+// below 0 far from the light; it ends at 0 here.
+static inline double oren_nayar_once(const struct oren_nayar_angles *a, double sigma) {
     const double s2 = sigma * sigma, b = 2 * a->beta / M_PI;
+    const double ab = 4 * a->alpha * a->beta / (M_PI * M_PI);
     const double c1 = 1 - 0.5 * s2 / (s2 + 0.33);
     const double c2 = 0.45 * s2 / (s2 + 0.09) *
                       (a->sin_alpha - (a->cos_phi < 0 ? b * b * b : 0));
-    const double ab = 4 * a->alpha * a->beta / (M_PI * M_PI);
     const double c3 = 0.125 * s2 / (s2 + 0.09) * ab * ab;
-    const double single = c1 + a->cos_phi * c2 * a->tan_beta +
-                          (1 - fabs(a->cos_phi)) * c3 * tan(0.5 * (a->alpha + a->beta));
-    const double twice = 0.17 * rho * s2 / (s2 + 0.13) * (1 - a->cos_phi * b * b);
-    return fmax(single + twice, 0);
+    return fmax(c1 + a->cos_phi * c2 * a->tan_beta +
+                    (1 - fabs(a->cos_phi)) * c3 * tan(0.5 * (a->alpha + a->beta)), 0);
+}
+
+// The full model, eq. 29: light reflected twice, to be multiplied by one more rho.
+static inline double oren_nayar_twice(const struct oren_nayar_angles *a, double sigma) {
+    const double s2 = sigma * sigma, b = 2 * a->beta / M_PI;
+    return 0.17 * s2 / (s2 + 0.13) * (1 - a->cos_phi * b * b);
 }

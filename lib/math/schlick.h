@@ -66,14 +66,14 @@ static inline double schlick_azimuth_sample(const struct schlick_azimuth *z, dou
     return phi;
 }
 
-// Density of schlick_sample.
+// Density of schlick_half_sample.
 static inline double schlick_pdf_h(struct direction h, double r, double p,
                                    const struct schlick_azimuth *z) {
     return schlick_Z(h, r) * schlick_A(h, p) * h.z / (M_PI * z->mean);
 }
 
 // A half vector; u, v in [0, 1).
-static inline struct direction schlick_sample(double r, const struct schlick_azimuth *z, double u,
+static inline struct direction schlick_half_sample(double r, const struct schlick_azimuth *z, double u,
                                               double v) {
     const double slope = sqrt(r * u / (1 - u)), phi = schlick_azimuth_sample(z, v);
     return direction_of(slope * cos(phi), slope * sin(phi), 1);

@@ -309,7 +309,7 @@ static void check_reciprocity(const struct object *o, struct run *r) {
 }
 
 static uint32_t claims_of(const struct object *o, const struct bsdf_case *c) {
-    uint32_t claims = bsdf_type_of(o)->claims;
+    uint32_t claims = bsdf_type_of(o)->claims & ~c->waived;
     for (int i = 0; i < 2 && c->children[i]; i++) {
         char name[64];
         bsdf_first_word(c->children[i], name, sizeof name);

@@ -21,9 +21,11 @@ struct bsdf_case {
     float eta;               // index inside over outside where light crosses; 0: not checked
     float tolerance;         // relative, of pdf and weight between sample and eval; 0: 2e-3
     int draws;               // 0: the row is one set as it stands
+    uint32_t waived;         // claims that these parameters give up, as the material's help says
 };
 
 static const struct bsdf_case bsdf_rows[] = {
+#include "property/bsdf_cases_classic.inc"
 #include "property/bsdf_cases_standard.inc"
 };
 
@@ -44,15 +46,14 @@ static inline int bsdf_set_count(const char *name) {
 
 // One number of a range "LOW..HIGH" or "LOW~HIGH"; anything else stands as it is.
 static inline void bsdf_draw_number(struct rng *rng, const char *range, char *out, size_t size) {
-    char *end;
-    const double low = strtod(range, &end);
-    const bool even = strncmp(end, "..", 2) == 0, logarithmic = *end == '~';
-    if (!even && !logarithmic) {
+    const char *dots = strstr(range, ".."), *wave = strchr(range, '~');
+    if (!dots && !wave) {
         snprintf(out, size, "%s", range);
         return;
     }
-    const double high = strtod(end + (even ? 2 : 1), NULL), u = rng_float(rng);
-    snprintf(out, size, "%.5g", even ? low + u * (high - low) : low * pow(high / low, u));
+    // not by strtod's end: it takes the first of two dots for a decimal point
+    const double low = atof(range), high = atof(dots ? dots + 2 : wave + 1), u = rng_float(rng);
+    snprintf(out, size, "%.5g", dots ? low + u * (high - low) : low * pow(high / low, u));
 }
 
 static inline void bsdf_draw_choice(struct rng *rng, const struct param *p, char *out,
