@@ -58,7 +58,9 @@ static inline struct sampler sampler_start(const struct sampler_type *type, uint
                                            uint32_t sample, uint32_t spp, uint32_t replicates,
                                            uint32_t seed) {
     const uint32_t replicate = sample % replicates;
-    const uint32_t h = hash_combine(hash_combine(hash_combine(seed, x), y), replicate);
+    // Mixed first: the numbers of neighbouring seeds would else be the same, some columns further.
+    const uint32_t picture = hash_u32(seed);
+    const uint32_t h = hash_combine(hash_combine(hash_combine(picture, x), y), replicate);
     const uint32_t count = (spp + replicates - 1) / replicates;
     const uint32_t index = sample / replicates;
     return (struct sampler){type, h, index, count ? count : 1, 0, reverse_bits(index)};
