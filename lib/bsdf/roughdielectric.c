@@ -2,10 +2,7 @@
 // Rough boundary between two dielectrics (Walter et al. 2007, Microfacet Models for Refraction
 // through Rough Surfaces): every facet reflects and refracts as glass does. The interior is the
 // side opposite to the normal.
-//
-// With h = wo + eta wi (unnormalised, eta of wi's side over wo's), refraction has the Jacobian
-// eta^2 |<wi, h>| / |h|^2 of unit h, and |h| = |eta cos_t - cos_o| = |eta^2 - 1| / (eta cos_t +
-// cos_o), which does not cancel as eta approaches 1.
+#include "bsdf/rough_boundary.h"
 #include "bsdf/roughness.h"
 #include "bsdf/smooth.h"
 #include "math/fresnel.h"
@@ -36,9 +33,6 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-// Refraction then spreads less than directions in float can tell apart: the smooth boundary.
-#define SPREAD_MIN 2e-6f
-
 static bool prepare(struct object *self, struct arena *arena) {
     const struct roughdielectric *r = self->data;
     (void)arena;
@@ -62,7 +56,7 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     const spectrum T = texture_eval(&self->transmittance, &point->at);
     struct microfacet facets;
     if (!roughness_at(&self->roughness, &point->at, &facets) ||
-        maxf(facets.alpha_u, facets.alpha_v) * fabsf(eta - 1) < SPREAD_MIN)
+        maxf(facets.alpha_u, facets.alpha_v) * fabsf(eta - 1) < REFRACTION_SPREAD_MIN)
         return dielectric_closure(eta, R, T, wo, stack);
     if (cos_theta(wo) == 0)
         return NULL;
@@ -85,17 +79,7 @@ static float pdf_reflected(const struct rough_data *c, vec3 h, float F) {
 
 // Density of refraction at the facet h under cosines of both sides.
 static float pdf_refracted(const struct rough_data *c, vec3 h, float F, float cos_o, float cos_t) {
-    const float q = c->eta * cos_t, d = (c->eta - 1) * (c->eta + 1);
-    return (1 - F) * microfacet_D(&c->facets, h) * c->inv_area * cos_o * c->eta * q *
-           sqr((q + cos_o) / d);
-}
-
-// The unit facet normal that refracts wo to wi, which is below; false: there is none.
-static bool refracting_facet(const struct rough_data *c, vec3 wi, vec3 *h) {
-    *h = normalize(c->wo + c->eta * wi);
-    if ((*h)[2] < 0)
-        *h = -*h;
-    return dot(c->wo, *h) > 0 && dot(wi, *h) < 0;
+    return (1 - F) * refracted_pdf_sa(&c->facets, c->inv_area, c->eta, h, cos_o, cos_t);
 }
 
 static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
@@ -110,7 +94,7 @@ static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
         return c->reflectance * (*pdf_sa * microfacet_G1(&c->facets, wi));
     }
     vec3 h;
-    if (!(wi[2] < 0) || !refracting_facet(c, wi, &h))
+    if (!(wi[2] < 0) || !refracting_facet(c->eta, c->wo, wi, &h))
         return spectrum_grey(0);
     const float cos_o = dot(c->wo, h);
     const float F = fresnel_dielectric(cos_o, c->eta, &cos_t);
@@ -134,7 +118,7 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
         s->eta = 1;
         s->lobe = LOBE_GLOSSY | LOBE_REFLECTION;
     } else {
-        s->wi = normalize((cos_o / c->eta - cos_t) * h - c->wo / c->eta);
+        s->wi = refract_at_facet(c->eta, c->wo, h, cos_o, cos_t);
         s->pdf_sa = pdf_refracted(c, h, F, cos_o, cos_t);
         s->weight = c->transmittance;
         s->eta = c->eta;
