@@ -60,6 +60,10 @@ struct json *json_new_array(void) {
     return (struct json *)made(json_array());
 }
 
+struct json *json_clone(const struct json *root) {
+    return (struct json *)made(json_deep_copy(see(root)));
+}
+
 void json_destroy(struct json *root) {
     json_decref(own(root));
 }
@@ -96,6 +100,10 @@ struct json *json_add_object(struct json *object, const char *key) {
 
 struct json *json_add_array(struct json *object, const char *key) {
     return (struct json *)set(object, key, made(json_array()));
+}
+
+void json_append_count(struct json *array, int64_t value) {
+    json_array_append_new(own(array), made(json_integer(value)));
 }
 
 void json_append_number(struct json *array, double value) {

@@ -14,6 +14,7 @@ struct json; // any value
 struct json *json_new_object(void);
 struct json *json_new_array(void);
 void json_destroy(struct json *root); // NULL is fine
+struct json *json_clone(const struct json *root);
 
 void json_add_number(struct json *object, const char *key, double value);
 void json_add_count(struct json *object, const char *key, int64_t value);
@@ -21,6 +22,7 @@ void json_add_bool(struct json *object, const char *key, bool value);
 void json_add_text(struct json *object, const char *key, const char *value); // NULL: null
 struct json *json_add_object(struct json *object, const char *key);          // the child
 struct json *json_add_array(struct json *object, const char *key);
+void json_append_count(struct json *array, int64_t value);
 void json_append_number(struct json *array, double value);
 void json_append_text(struct json *array, const char *value);
 struct json *json_append_object(struct json *array);

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tensors: how the pixels of a picture depend on lights or materials, as a file and in memory.
+//
+// A tensor is a list of blocks. A block holds, for a list of pixels, one coefficient per basis
+// function and colour channel; the pixel is the sum over its blocks of coefficients times weights,
+// plus the fixed picture. Where a pixel shows several objects it stands in several lists, and its
+// coefficients carry its coverage.
+//
+// The file is a safetensors container: u64 length of the header, little-endian; the header, JSON,
+// padded with spaces so that the data begin at a multiple of 128; then the arrays, each aligned to
+// 128 bytes. Arrays of block N:
+//
+//     N.pixels   U32 [n]             index y * width + x of each pixel, increasing
+//     N.values   F32 or BF16 [tiles, coefficients, channels, 64]   mean of the two half-sums
+//     N.halves   same                half their difference; absent where the tensor has no noise
+//     N.view     F32 [tiles, 64]     angle between normal and eye for f_o, radians; or absent
+//     N.edges0   F64 [bins + 1]      bin edges of the first axis, radians (N.edges1: of the second)
+//
+// and "fixed" F32 [3, height, width], what no weight changes; or absent. Tiles are 64 pixels in the
+// order of the list; lanes beyond its end are zero. The order of coefficients is (group, bin of
+// axis 0, bin of axis 1), the last running fastest. What the blocks mean stands as a JSON text
+// under "relume" in the header's "__metadata__"; the field descriptions are those of the structs.
+//
+// Errors: let a and b be two independent estimates of a pixel (from the two halves); the picture is
+// their mean, and the same weights on `halves` give (a - b) / 2, whose square estimates its
+// variance. A sum over many pixels of it is the squared error to be expected.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/json.h"
+
+enum { TENSOR_LANES = 64, TENSOR_ALIGN = 128, TENSOR_MOST_AXES = 2 };
+
+enum tensor_storage { TENSOR_F32, TENSOR_BF16 };
+
+enum tensor_basis { TENSOR_BOX, TENSOR_HAT };
+
+// One variable of a curve: bins of an angle (curve/angles.h), radians. A hat basis has its nodes at
+// the centres of the bins.
+struct tensor_axis {
+    const char *name; // parametrisation: "theta_h", ...; or what the coefficients are: "light"
+    enum tensor_basis basis;
+    uint32_t bins;
+    const double *edges; // bins + 1, increasing; NULL where bins are not intervals
+};
+
+struct tensor_block {
+    const char *object, *term; // as `relume edit --list` shows them
+    uint32_t axis_count;
+    struct tensor_axis axes[TENSOR_MOST_AXES];
+    uint32_t groups;       // coefficients per bin: 1, or products of other objects' albedos
+    uint32_t coefficients; // groups times the bins of all axes
+    uint32_t channels;     // 3
+    uint64_t pixel_count;
+    const uint32_t *pixels;
+    enum tensor_storage storage;
+    const void *values;
+    const void *halves; // NULL: no noise
+    const float *view;  // NULL: none
+};
+
+struct tensor {
+    uint32_t width, height;
+    const struct json *meta; // everything else that the metadata say; owned by the file
+    uint32_t block_count;
+    struct tensor_block *blocks;
+    const float *fixed; // 3 planes; NULL: black
+};
+
+static inline uint64_t tensor_tiles(const struct tensor_block *b) {
+    return (b->pixel_count + TENSOR_LANES - 1) / TENSOR_LANES;
+}
+
+static inline size_t tensor_value_size(enum tensor_storage s) {
+    return s == TENSOR_BF16 ? 2 : 4;
+}
+
+// Bytes of `values`.
+static inline uint64_t tensor_bytes(const struct tensor_block *b) {
+    return tensor_tiles(b) * b->coefficients * b->channels * TENSOR_LANES *
+           tensor_value_size(b->storage);
+}
+
+// bfloat16, rounded to nearest even; infinities stay, NaN stays NaN.
+static inline uint16_t bf16_from_float(float f) {
+    uint32_t u;
+    __builtin_memcpy(&u, &f, sizeof u);
+    if ((u & 0x7fffffff) > 0x7f800000)
+        return (uint16_t)(u >> 16 | 0x40);
+    return (uint16_t)((u + 0x7fff + (u >> 16 & 1)) >> 16);
+}
+
+static inline float bf16_to_float(uint16_t h) {
+    const uint32_t u = (uint32_t)h << 16;
+    float f;
+    __builtin_memcpy(&f, &u, sizeof f);
+    return f;
+}
+
+// ---- reading ------------------------------------------------------------------------------------
+
+struct tensor_file;
+
+// Maps the file, and checks all of it but the values: sizes, overlaps, indices, edges. NULL after
+// an error message that names the file.
+struct tensor_file *tensor_open(const char *path);
+const struct tensor *tensor_get(const struct tensor_file *f);
+// Whether every value is finite; reads the whole file. false after an error message.
+bool tensor_check_values(const struct tensor_file *f);
+void tensor_close(struct tensor_file *f); // NULL is fine
+
+// ---- writing ------------------------------------------------------------------------------------
+
+struct tensor_writer;
+
+// Begins a file for a tensor of this shape: everything but values, halves and fixed is taken from
+// `shape` and written at once; a block has halves, and the tensor a fixed picture, where the pointer
+// is not NULL (it is not read). meta: what else is known, merged into the metadata. Atomic: the file
+// appears when the writer is closed. NULL after an error message.
+struct tensor_writer *tensor_create(const char *path, const struct tensor *shape);
+// Where the parts of the file lie in memory, to be filled: zero at first, from any thread.
+void *tensor_values(struct tensor_writer *w, uint32_t block);
+void *tensor_halves(struct tensor_writer *w, uint32_t block);
+float *tensor_fixed(struct tensor_writer *w);
+// Completes the file. false after an error message.
+bool tensor_finish(struct tensor_writer *w);
+void tensor_abandon(struct tensor_writer *w);

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/log.h"
+#include "base/mem.h"
+#include "transport/tensor.h"
+
+enum { VERSION = 1 };
+
+struct tensor_writer {
+    char path[4096], temp[4096];
+    unsigned char *map;
+    size_t size;
+    unsigned char *data;
+    uint64_t *values, *halves; // offsets by block
+    uint64_t fixed;
+    const struct tensor *shape; // while the writer is being made
+};
+
+// ---- header -------------------------------------------------------------------------------------
+
+// Adds an array behind the others and returns where it begins.
+static uint64_t add_array(struct json *header, const char *name, const char *dtype, size_t item,
+                          const uint64_t *shape, int rank, uint64_t *end) {
+    struct json *entry = json_add_object(header, name);
+    const uint64_t begin = (*end + TENSOR_ALIGN - 1) / TENSOR_ALIGN * TENSOR_ALIGN;
+    uint64_t bytes = item;
+    json_add_text(entry, "dtype", dtype);
+    struct json *sizes = json_add_array(entry, "shape");
+    for (int i = 0; i < rank; i++) {
+        json_append_count(sizes, (int64_t)shape[i]);
+        bytes *= shape[i];
+    }
+    struct json *offsets = json_add_array(entry, "data_offsets");
+    json_append_count(offsets, (int64_t)begin);
+    json_append_count(offsets, (int64_t)(begin + bytes));
+    *end = begin + bytes;
+    return begin;
+}
+
+static const char *storage_name(enum tensor_storage s) {
+    return s == TENSOR_BF16 ? "BF16" : "F32";
+}
+
+static void describe_block(struct json *blocks, const struct tensor_block *b) {
+    struct json *j = json_append_object(blocks);
+    json_add_text(j, "object", b->object);
+    json_add_text(j, "term", b->term);
+    json_add_text(j, "storage", storage_name(b->storage));
+    json_add_count(j, "pixels", (int64_t)b->pixel_count);
+    json_add_count(j, "channels", b->channels);
+    json_add_count(j, "groups", b->groups);
+    struct json *axes = json_add_array(j, "axes");
+    for (uint32_t i = 0; i < b->axis_count; i++) {
+        struct json *axis = json_append_object(axes);
+        json_add_text(axis, "name", b->axes[i].name);
+        json_add_text(axis, "basis", b->axes[i].basis == TENSOR_HAT ? "hat" : "box");
+        json_add_count(axis, "bins", b->axes[i].bins);
+        json_add_bool(axis, "edges", b->axes[i].edges != NULL);
+    }
+}
+
+static struct json *describe(const struct tensor *t) {
+    struct json *meta = t->meta ? json_clone(t->meta) : json_new_object();
+    json_add_count(meta, "version", VERSION);
+    json_add_count(meta, "width", t->width);
+    json_add_count(meta, "height", t->height);
+    struct json *blocks = json_add_array(meta, "blocks");
+    for (uint32_t i = 0; i < t->block_count; i++)
+        describe_block(blocks, &t->blocks[i]);
+    return meta;
+}
+
+// Small arrays that are known already, copied when the file is mapped.
+struct copy {
+    uint64_t to;
+    const void *from;
+    size_t size;
+};
+
+struct plan {
+    struct json *header;
+    uint64_t end;
+    struct copy *copies;
+    size_t count, capacity;
+};
+
+static uint64_t add_small(struct plan *p, uint32_t block, const char *what, const char *dtype,
+                          size_t item, const uint64_t *shape, int rank, const void *from,
+                          uint64_t size) {
+    char name[64];
+    snprintf(name, sizeof name, "%u.%s", block, what);
+    const uint64_t at = add_array(p->header, name, dtype, item, shape, rank, &p->end);
+    if (from) {
+        mem_grow(&p->copies, &p->capacity, p->count + 1, sizeof *p->copies);
+        p->copies[p->count++] = (struct copy){at, from, size};
+    }
+    return at;
+}
+
+static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
+    const struct tensor_block *b = &w->shape->blocks[i];
+    const uint64_t tiles = tensor_tiles(b);
+    const uint64_t shape[4] = {tiles, b->coefficients, b->channels, TENSOR_LANES};
+    const uint64_t view[2] = {tiles, TENSOR_LANES};
+    const char *dtype = storage_name(b->storage);
+    const size_t item = tensor_value_size(b->storage);
+    add_small(p, i, "pixels", "U32", 4, &b->pixel_count, 1, b->pixels, b->pixel_count * 4);
+    for (uint32_t a = 0; a < b->axis_count; a++) {
+        const uint64_t edges = (uint64_t)b->axes[a].bins + 1;
+        if (b->axes[a].edges)
+            add_small(p, i, a ? "edges1" : "edges0", "F64", 8, &edges, 1, b->axes[a].edges, edges * 8);
+    }
+    if (b->view)
+        add_small(p, i, "view", "F32", 4, view, 2, b->view, tiles * TENSOR_LANES * 4);
+    w->values[i] = add_small(p, i, "values", dtype, item, shape, 4, NULL, 0);
+    if (b->halves)
+        w->halves[i] = add_small(p, i, "halves", dtype, item, shape, 4, NULL, 0);
+}
+
+// The header as a text that ends, with the length before it, at a multiple of the alignment.
+static char *header_text(struct json *header, uint64_t *size) {
+    char *text = json_to_text(header);
+    const size_t n = strlen(text);
+    *size = (n + 8 + TENSOR_ALIGN - 1) / TENSOR_ALIGN * TENSOR_ALIGN - 8;
+    char *padded = mem_array(*size + 1, 1);
+    memcpy(padded, text, n);
+    memset(padded + n, ' ', *size - n);
+    mem_free(text);
+    return padded;
+}
+
+// ---- file ---------------------------------------------------------------------------------------
+
+static bool map_file(struct tensor_writer *w) {
+    const int fd = open(w->temp, O_RDWR | O_CREAT | O_TRUNC, 0644);
+    // Room is taken now: a full disk would otherwise end the process when a page is written.
+    int error = fd < 0 ? errno : posix_fallocate(fd, 0, (off_t)w->size);
+    void *map = error ? MAP_FAILED : mmap(NULL, w->size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    if (!error && map == MAP_FAILED)
+        error = errno;
+    if (fd >= 0)
+        close(fd);
+    if (error) {
+        log_error("%s: cannot be written (%zu bytes): %s", w->path, w->size, strerror(error));
+        file_discard(w->temp);
+        return false;
+    }
+    w->map = map;
+    return true;
+}
+
+static bool write_plan(struct tensor_writer *w, const struct plan *p) {
+    uint64_t n;
+    char *text = header_text(p->header, &n);
+    w->size = 8 + n + p->end;
+    const bool mapped = map_file(w);
+    if (mapped) {
+        memcpy(w->map, &n, sizeof n);
+        memcpy(w->map + 8, text, n);
+        w->data = w->map + 8 + n;
+        for (size_t i = 0; i < p->count; i++)
+            memcpy(w->data + p->copies[i].to, p->copies[i].from, p->copies[i].size);
+    }
+    mem_free(text);
+    return mapped;
+}
+
+static bool make_file(struct tensor_writer *w) {
+    const struct tensor *t = w->shape;
+    struct plan p = {.header = json_new_object()};
+    const uint64_t fixed[3] = {3, t->height, t->width};
+    struct json *meta = describe(t);
+    char *text = json_to_text(meta);
+    json_add_text(json_add_object(p.header, "__metadata__"), "relume", text);
+    for (uint32_t i = 0; i < t->block_count; i++)
+        plan_block(w, &p, i);
+    if (t->fixed)
+        w->fixed = add_array(p.header, "fixed", "F32", 4, fixed, 3, &p.end);
+    const bool made = write_plan(w, &p);
+    mem_free(text);
+    json_destroy(meta);
+    json_destroy(p.header);
+    mem_free(p.copies);
+    return made;
+}
+
+struct tensor_writer *tensor_create(const char *path, const struct tensor *shape) {
+    struct tensor_writer *w = mem_array(1, sizeof *w);
+    w->shape = shape;
+    w->values = mem_array(shape->block_count, sizeof *w->values);
+    w->halves = mem_array(shape->block_count, sizeof *w->halves);
+    const bool named = snprintf(w->path, sizeof w->path, "%s", path) < (int)sizeof w->path &&
+                       file_temp_name(path, w->temp, sizeof w->temp);
+    const bool made = named && make_file(w);
+    w->shape = NULL;
+    if (made)
+        return w;
+    w->temp[0] = '\0';
+    tensor_abandon(w);
+    return NULL;
+}
+
+void *tensor_values(struct tensor_writer *w, uint32_t block) {
+    return w->data + w->values[block];
+}
+
+void *tensor_halves(struct tensor_writer *w, uint32_t block) {
+    return w->data + w->halves[block];
+}
+
+float *tensor_fixed(struct tensor_writer *w) {
+    return (float *)(void *)(w->data + w->fixed);
+}
+
+bool tensor_finish(struct tensor_writer *w) {
+    const bool synced = msync(w->map, w->size, MS_SYNC) == 0;
+    if (!synced)
+        log_error("%s: cannot be written: %s", w->path, strerror(errno));
+    const bool written = synced && file_commit(w->temp, w->path);
+    if (written)
+        w->temp[0] = '\0';
+    tensor_abandon(w);
+    return written;
+}
+
+void tensor_abandon(struct tensor_writer *w) {
+    if (w->map)
+        munmap(w->map, w->size);
+    if (w->temp[0])
+        file_discard(w->temp);
+    mem_free(w->values);
+    mem_free(w->halves);
+    mem_free(w);
+}
