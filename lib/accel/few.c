@@ -168,14 +168,19 @@ static wide side(const struct few_triangle *t, int k, struct wide3 d, struct wid
     return dot_with(t->moment[k], d) + dot_with(t->edge[k], o_cross_d);
 }
 
-// Weights of the corners, not normalised, and whether the whole line meets the triangle.
+// Weights of the corners, not normalised, their sum, and whether the whole line meets the triangle.
+// The signs at a corner can contradict each other by rounding; what they lack is tolerated, as a
+// share of the triangle.
 static wide_mask line_meets(const struct few_triangle *t, struct wide3 d, struct wide3 o_cross_d,
-                            wide weights[3]) {
+                            wide weights[3], wide *all) {
+    const float tolerated = 0x1p-21f;
     for (int k = 0; k < 3; k++)
         weights[k] = side(t, k, d, o_cross_d);
+    *all = weights[0] + weights[1] + weights[2];
+    const wide slack = tolerated * wide_abs(*all);
     const wide least = wide_min(weights[0], wide_min(weights[1], weights[2]));
     const wide most = wide_max(weights[0], wide_max(weights[1], weights[2]));
-    return (least >= 0) | (most <= 0);
+    return (least >= -slack) | (most <= slack);
 }
 
 static wide plane_distance(const struct few_triangle *t, const struct accel_rays *r) {
@@ -203,7 +208,7 @@ static bool quadric_hit(const struct few_quadric *q, const struct accel_rays *r,
 }
 
 static void intersect_quadrics(const struct few *f, const struct accel_rays *r, wide *best,
-                               wide_int *found) {
+                               wide_int *found, struct accel_hits *h) {
     for (uint32_t k = 0; k < f->quadric_count; k++) {
         const uint32_t near = come_near(&f->quadrics[k], r, *best);
         for (int i = 0; i < WIDE_LANES; i++) {
@@ -211,6 +216,7 @@ static void intersect_quadrics(const struct few *f, const struct accel_rays *r, 
             if (near >> i & 1 && quadric_hit(&f->quadrics[k], r, i, (*best)[i], &t)) {
                 (*best)[i] = (float)t;
                 (*found)[i] = (int32_t)(f->triangle_count + k);
+                h->u[i] = h->v[i] = 0;
             }
         }
     }
@@ -229,8 +235,8 @@ void few_intersect(const struct few *f, const struct accel_rays *r, struct accel
     wide best = r->tmax, u = {0}, v = {0}, all = wide_of(1);
     wide_int found = wide_int_of(-1);
     for (uint32_t k = 0; k < f->triangle_count; k++) {
-        wide w[3];
-        const wide_mask meets = line_meets(&f->triangles[k], d, o_cross_d, w);
+        wide w[3], sum;
+        const wide_mask meets = line_meets(&f->triangles[k], d, o_cross_d, w, &sum);
         if (!wide_any(meets))
             continue;
         const wide t = plane_distance(&f->triangles[k], r);
@@ -240,13 +246,14 @@ void few_intersect(const struct few *f, const struct accel_rays *r, struct accel
         best = wide_select(hit, t, best);
         u = wide_select(hit, w[1], u);
         v = wide_select(hit, w[2], v);
-        all = wide_select(hit, w[0] + w[1] + w[2], all);
+        all = wide_select(hit, sum, all);
         found = wide_int_select(hit, wide_int_of((int32_t)k), found);
     }
+    all = wide_select(all != 0, all, wide_of(1)); // of a triangle without area
     h->u = u / all;
     h->v = v / all;
     if (f->quadric_count)
-        intersect_quadrics(f, r, &best, &found);
+        intersect_quadrics(f, r, &best, &found, h);
     h->t = best;
     name_hits(f, found, h);
 }
@@ -256,8 +263,8 @@ uint32_t few_occluded(const struct few *f, const struct accel_rays *r) {
     const uint32_t live = wide_bits(r->tmin < r->tmax);
     uint32_t blocked = 0;
     for (uint32_t k = 0; k < f->triangle_count && blocked != live; k++) {
-        wide w[3];
-        const wide_mask meets = line_meets(&f->triangles[k], d, o_cross_d, w);
+        wide w[3], sum;
+        const wide_mask meets = line_meets(&f->triangles[k], d, o_cross_d, w, &sum);
         if (!wide_any(meets))
             continue;
         const wide t = plane_distance(&f->triangles[k], r);
