@@ -66,6 +66,12 @@ enum bsdf_claim {
     CLAIM_LOSSLESS = 4,     // directional albedo exactly 1 with default colours (smooth dielectric)
 };
 
+// What a material that reflects by Lambert's law is, for those that can shade many points at once.
+struct lambert {
+    const struct texture_ref *reflectance;
+    bool two_sided;
+};
+
 struct bsdf_type {
     struct entry entry;
     uint32_t claims; // enum bsdf_claim
@@ -78,6 +84,8 @@ struct bsdf_type {
     // The material at a point, seen from wo. NULL: absorbs everything (black), nothing to sample.
     const struct closure *(*resolve)(const void *data, const struct bsdf_point *point, vec3 wo,
                                      struct closure_stack *stack);
+    // Whether it is nothing but Lambert's law, with the bits of eval and sample below. NULL: no.
+    bool (*is_lambert)(const void *data, struct lambert *l);
     // f |cos theta_i| of the non-delta lobes; *pdf_sa is sample's density of this wi.
     spectrum (*eval)(const struct closure *closure, vec3 wi, float *pdf_sa);
     // u1 chooses the lobe, u2 the direction, all in [0,1). false: nothing was scattered.
@@ -108,6 +116,11 @@ static inline const struct closure *bsdf_resolve(const struct object *o,
                                                  const struct bsdf_point *point, vec3 wo,
                                                  struct closure_stack *stack) {
     return bsdf_type_of(o)->resolve(o->data, point, wo, stack);
+}
+
+static inline bool bsdf_is_lambert(const struct object *o, struct lambert *l) {
+    const struct bsdf_type *type = bsdf_type_of(o);
+    return type->is_lambert && type->is_lambert(o->data, l);
 }
 
 static inline uint32_t bsdf_lobes(const struct object *o) {

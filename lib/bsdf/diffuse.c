@@ -34,6 +34,11 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     return &c->head;
 }
 
+static bool is_lambert(const void *data, struct lambert *l) {
+    *l = (struct lambert){&((const struct diffuse *)data)->reflectance, false};
+    return true;
+}
+
 static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     const struct diffuse_closure *c = (const void *)closure;
     const float cos_i = cos_theta(wi);
@@ -65,5 +70,5 @@ const struct bsdf_type bsdf_diffuse = {
     .entry = {.name = "diffuse", .help = "ideal diffuse reflection (Lambert 1760)",
               .params = params, .size = sizeof(struct diffuse)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
-    .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample, .albedo = albedo,
+    .lobes = lobes, .resolve = resolve, .is_lambert = is_lambert, .eval = eval, .sample = sample, .albedo = albedo,
 };

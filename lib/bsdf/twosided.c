@@ -54,6 +54,13 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     return &c->head;
 }
 
+static bool is_lambert(const void *data, struct lambert *l) {
+    const struct twosided *self = data;
+    const bool is = !self->back && bsdf_is_lambert(self->front, l);
+    l->two_sided = true;
+    return is;
+}
+
 static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     const struct twosided_data *c = (const void *)closure;
     return closure_eval(c->child, mirror(wi), pdf_sa);
@@ -77,6 +84,6 @@ const struct bsdf_type bsdf_twosided = {
     .entry = {.name = "twosided", .help = "one-sided materials on both sides", .params = params,
               .size = sizeof(struct twosided)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
-    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .is_lambert = is_lambert, .eval = eval, .sample = sample,
     .albedo = albedo,
 };

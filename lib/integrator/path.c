@@ -4,13 +4,7 @@
 //
 // Many paths advance together, vertex by vertex, so that rays are there to fill packets: those that
 // run side by side, of the camera and the first shadow rays, and all where a scene is small.
-#include "integrator/vertex.h"
-
-struct path {
-    int max_depth, rr_depth;
-    bool hide_emitters, strict_normals;
-    int light_choice;
-};
+#include "integrator/path.h"
 
 static const struct param params[] = {
     {"max_depth", PARAM_INT, offsetof(struct path, max_depth), .def = "-1", .min = -1, .max = 1e6,
@@ -31,34 +25,6 @@ static bool prepare(struct object *self, struct integrator_wants *wants) {
     return true;
 }
 
-// Dimensions of the random numbers: those of the camera, then so many for each vertex, whether or
-// not it needs them all, so that each purpose keeps its own well-distributed points.
-enum {
-    CAMERA_DIMENSIONS = 4,
-    VERTEX_DIMENSIONS = 8,
-    DRAW_LIGHT_POINT = 0,
-    DRAW_DIRECTION = 2,
-    DRAW_LIGHT = 4,
-    DRAW_LOBE = 5,
-    DRAW_ROULETTE = 6,
-};
-
-enum {
-    LEAST_IN_PACKET = 4, // rays: fewer are faster one by one
-    MOST_LANES = SINK_MOST_LANES,
-};
-
-struct lane {
-    struct ray ray;
-    spectrum beta;
-    float eta2; // product of the squared relative indices crossed: refraction's radiance scaling
-    struct path_origin from;
-    struct sampler sampler;
-    struct shadow_test shadow;
-    uint32_t events; // vertices, null ones included
-    bool alive, first_done;
-};
-
 static struct sampler *draw(struct lane *l, uint32_t purpose) {
     l->sampler.dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * l->events + purpose;
     return &l->sampler;
@@ -67,10 +33,6 @@ static struct sampler *draw(struct lane *l, uint32_t purpose) {
 // Whether shading and geometric normal agree on which side w (local wl) is.
 static bool same_side(const struct surface *s, vec3 w, vec3 wl) {
     return dot(w, s->ng) * cos_theta(wl) > 0;
-}
-
-static bool may_contribute(const struct path *p, uint32_t edges) {
-    return p->max_depth < 0 || edges < (uint32_t)p->max_depth;
 }
 
 static void leave_scene(const struct path *p, struct trace_context *ctx, int i, struct lane *l) {
@@ -153,7 +115,7 @@ static void shade(const struct path *p, struct trace_context *ctx, int i, struct
         vertex_add_emission(ctx, i, &s, l->ray.d, l->beta, &l->from);
     const vec3 wo = to_local(&s.point.frame, -l->ray.d);
     const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
-    const bool goes_on = closure && may_contribute(p, l->events + 1) &&
+    const bool goes_on = closure && path_may_contribute(p, l->events + 1) &&
                          (!p->strict_normals || same_side(&s, -l->ray.d, wo));
     const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);
     if (goes_on && closure->lobes & LOBE_SMOOTH)
@@ -192,12 +154,6 @@ struct wave {
     struct lane lanes[MOST_LANES];
     uint16_t alive[MOST_LANES];
     uint32_t count;
-};
-
-// Up to sixteen lanes of a wave, by index.
-struct packet {
-    const uint16_t *lanes;
-    int count;
 };
 
 // The packet that begins at `first` of a list. Embree's packets may return other hits when other rays
@@ -283,13 +239,15 @@ static void advance(const struct path *p, struct trace_context *ctx, struct wave
         struct accel_hit hits[SINK_LANES];
         packet = packet_at(ctx->world, w->alive, w->count, first);
         find_hits(ctx, w->lanes, &packet, camera, hits);
+        for (int k = 0; k < packet.count; k++)
+            w->lanes[packet.lanes[k]].shadow.pending = false;
+        const uint32_t done = path_shade_lambert(p, ctx, w->lanes, &packet, hits);
         for (int k = 0; k < packet.count; k++) {
             const uint16_t i = packet.lanes[k];
             struct lane *l = &w->lanes[i];
-            l->shadow.pending = false;
             if (hits[k].shape == SCENE_NONE)
                 leave_scene(p, ctx, i, l);
-            else
+            else if (!(done >> k & 1))
                 shade(p, ctx, i, l, &hits[k]);
             if (l->shadow.pending)
                 pending[tests++] = i;
@@ -308,7 +266,7 @@ static void trace(const void *data, struct trace_context *ctx, const struct path
         start(ctx, &w.lanes[w.count], &starts[w.count]);
         w.alive[w.count] = (uint16_t)w.count;
     }
-    if (may_contribute(p, 0))
+    if (path_may_contribute(p, 0))
         for (bool camera = true; w.count; camera = false)
             advance(p, ctx, &w, camera);
 }

@@ -47,6 +47,18 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
     return true;
 }
 
+static bool has_wide(const void *data) {
+    const struct area *a = data;
+    return a->is_mesh && a->mesh.kind == POLYGON_RECTANGLE && !a->radiance.texture;
+}
+
+static wide_mask sample_wide(const void *data, const struct wide3 *p, const wide u[2],
+                             struct light_samples *s) {
+    const struct area *a = data;
+    s->emission = a->radiance.value;
+    return area_rectangle_sample_wide(&a->mesh, p, u, s);
+}
+
 static spectrum emission(const void *data, const struct light_hit *hit) {
     const struct area *a = data;
     const bool faces = a->is_mesh ? area_mesh_faces(&a->mesh, hit) : dot(hit->ng, hit->wi) < 0;
@@ -124,7 +136,8 @@ static void finish(void *data) {
 const struct light_type light_area = {
     .entry = {.name = "area", .help = "emitting surface", .params = params,
               .size = sizeof(struct area)},
-    .prepare = prepare, .sample = sample, .emission = emission, .pdf_sa = pdf_sa, .power = power,
+    .prepare = prepare, .sample = sample, .sample_wide = sample_wide, .has_wide = has_wide,
+    .emission = emission, .pdf_sa = pdf_sa, .power = power,
     .bounds = bounds, .parts = parts, .part_sample = part_sample, .part_pdf_sa = part_pdf_sa,
     .finish = finish,
 };

@@ -5,6 +5,7 @@
 
 #include "light/solid_angle.h"
 #include "math/warp.h"
+#include "math/wide_maps.h"
 
 static vec3 vertex(const struct mesh *m, uint32_t triangle, uint32_t corner) {
     return v3_load(m->positions[m->indices[triangle][corner % 3]]);
@@ -180,6 +181,58 @@ bool area_mesh_sample(const struct area_mesh *a, vec3 p, struct vec2 u, struct l
     if (solid_angle > 0)
         s->pdf_sa = 1 / solid_angle;
     return true;
+}
+
+// ---- sixteen lit points: the operations above, lane by lane
+
+// Corner k of the rectangle's first or, where the mask is set, second triangle.
+static struct wide3 corner_wide(const struct area_mesh *a, wide_mask second, uint32_t k) {
+    return wide3_select(second, wide3_of(vertex(a->mesh, 1, k)), wide3_of(vertex(a->mesh, 0, k)));
+}
+
+static void place_wide(const struct area_mesh *a, wide x, wide y, struct light_samples *s) {
+    const wide_mask second = x + y > 1;
+    const wide at_x = wide_select(second, 1 - x, x), at_y = wide_select(second, 1 - y, y);
+    const wide rest = wide_select(second, x + y - 1, 1 - x - y);
+    wide b[2][3]; // of each triangle
+    for (int t = 0; t < 2; t++) {
+        b[t][a->first[t]] = rest;
+        b[t][(a->first[t] + 1) % 3] = at_x;
+        b[t][(a->first[t] + 2) % 3] = at_y;
+    }
+    const wide b1 = wide_select(second, b[1][1], b[0][1]), b2 = wide_select(second, b[1][2], b[0][2]);
+    const struct wide3 v0 = corner_wide(a, second, 0), v1 = corner_wide(a, second, 1),
+                       v2 = corner_wide(a, second, 2);
+    const struct wide3 p0 = wide3_scale(1 - b1 - b2, v0), p1 = wide3_scale(b1, v1),
+                       p2 = wide3_scale(b2, v2);
+    s->p = wide3_add(wide3_add(p0, p1), p2);
+    s->p_error = wide_triangle_error(p0, p1, p2, wide3_sub(v1, v0), wide3_sub(v2, v0));
+    s->n = wide3_of(a->n);
+}
+
+wide_mask area_rectangle_sample_wide(const struct area_mesh *a, const struct wide3 *p,
+                                     const wide u[2], struct light_samples *s) {
+    wide x = u[0], y = u[1], solid_angle = {0};
+    const struct wide3 from_middle = wide3_sub(*p, wide3_of(a->middle));
+    const struct wide3 from_corner = wide3_sub(*p, wide3_of(a->corner));
+    uint32_t near = wide_bits((wide_dot(from_middle, from_middle) < 5 * a->area) &
+                              (wide_dot(from_corner, wide3_of(a->n)) > a->least_height));
+    for (; near; near &= near - 1) {
+        const int i = __builtin_ctz(near);
+        struct vec2 xy = {x[i], y[i]};
+        solid_angle[i] = solid_angle_sample_rectangle(a, wide3_lane(p, i), xy, &xy);
+        x[i] = xy.x;
+        y[i] = xy.y;
+    }
+    place_wide(a, x, y, s);
+    const struct wide3 d = wide3_sub(s->p, *p);
+    s->distance = wide_sqrt(wide_dot(d, d));
+    s->wi = wide_normalize(d);
+    const wide cosine = -wide_dot(s->wi, s->n);
+    const wide by_area = a->inv_area * s->distance * s->distance / cosine;
+    const wide_mask lit = (cosine > 0) & (by_area < INFINITY) & (by_area > 0);
+    s->pdf_sa = wide_select(solid_angle > 0, 1 / solid_angle, by_area);
+    return lit;
 }
 
 float area_mesh_pdf_sa(const struct area_mesh *a, vec3 p, const struct light_hit *hit) {

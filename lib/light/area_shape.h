@@ -31,6 +31,9 @@ bool area_mesh_init(struct area_mesh *a, const struct shape *shape);
 void area_mesh_finish(struct area_mesh *a);
 bool area_mesh_sample(const struct area_mesh *a, vec3 p, struct vec2 u, struct light_sample *s,
                       struct texture_point *at);
+// The same for sixteen lit points, of a rectangle.
+wide_mask area_rectangle_sample_wide(const struct area_mesh *a, const struct wide3 *p,
+                                     const wide u[2], struct light_samples *s);
 float area_mesh_pdf_sa(const struct area_mesh *a, vec3 p, const struct light_hit *hit);
 // Single triangles of a POLYGON_MESH, as above; a hit's is hit->at.triangle.
 uint32_t area_mesh_parts(const struct area_mesh *a);

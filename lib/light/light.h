@@ -12,6 +12,7 @@
 #include "math/ray.h"
 #include "math/transform.h"
 #include "math/vec.h"
+#include "math/wide.h"
 #include "scene/scene.h"
 #include "texture/texture.h"
 
@@ -23,6 +24,13 @@ struct light_sample {
     bool delta;        // no other technique can find this light
     vec3 p, p_error;   // point on the light and its rounding error; unused when infinite
     vec3 n;            // normal there, for offsetting; zero: do not offset
+};
+
+// Samples of sixteen lit points. A radiance that is the same everywhere is that of all lanes.
+struct light_samples {
+    struct wide3 wi, p, p_error, n;
+    wide distance, pdf_sa;
+    spectrum emission;
 };
 
 // A point of a light that was found by a ray. Infinite lights use wi only.
@@ -49,6 +57,11 @@ struct light_type {
     bool (*prepare)(struct object *self, const struct light_scene *scene, struct arena *arena);
     // false: this light cannot light that point
     bool (*sample)(const void *data, vec3 p, struct vec2 u, struct light_sample *s);
+    // sample for the lanes of p, with the same results; the lanes that were lit. NULL, or false from
+    // has_wide: one by one.
+    wide_mask (*sample_wide)(const void *data, const struct wide3 *p, const wide u[2],
+                             struct light_samples *s);
+    bool (*has_wide)(const void *data);
     // Radiance along the ray that found it (towards -wi). NULL for delta lights.
     spectrum (*emission)(const void *data, const struct light_hit *hit);
     // sample's density of finding this point of the light from p. NULL for delta lights.

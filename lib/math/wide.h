@@ -6,14 +6,13 @@
 // smaller vectors elsewhere.
 #pragma once
 
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
 #include <string.h>
 
 #if defined(__AVX512F__)
 #include <immintrin.h>
 #endif
+
+#include "math/vec.h"
 
 enum { WIDE_LANES = 16 };
 
@@ -107,4 +106,94 @@ static inline wide wide_dot(struct wide3 a, struct wide3 b) {
 
 static inline struct wide3 wide_cross(struct wide3 a, struct wide3 b) {
     return (struct wide3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline struct wide3 wide3_of(vec3 a) {
+    return (struct wide3){wide_of(a[0]), wide_of(a[1]), wide_of(a[2])};
+}
+
+static inline vec3 wide3_lane(const struct wide3 *a, int i) {
+    return v3(a->x[i], a->y[i], a->z[i]);
+}
+
+static inline void wide3_set_lane(struct wide3 *a, int i, vec3 v) {
+    a->x[i] = v[0];
+    a->y[i] = v[1];
+    a->z[i] = v[2];
+}
+
+static inline struct wide3 wide3_select(wide_mask m, struct wide3 a, struct wide3 b) {
+    return (struct wide3){wide_select(m, a.x, b.x), wide_select(m, a.y, b.y), wide_select(m, a.z, b.z)};
+}
+
+static inline struct wide3 wide3_add(struct wide3 a, struct wide3 b) {
+    return (struct wide3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline struct wide3 wide3_sub(struct wide3 a, struct wide3 b) {
+    return (struct wide3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline struct wide3 wide3_scale(wide s, struct wide3 a) {
+    return (struct wide3){s * a.x, s * a.y, s * a.z};
+}
+
+static inline struct wide3 wide3_abs(struct wide3 a) {
+    return (struct wide3){wide_abs(a.x), wide_abs(a.y), wide_abs(a.z)};
+}
+
+// -a where the mask is set, a elsewhere.
+static inline wide wide_negate(wide_mask m, wide a) {
+    return (wide)((wide_int)a ^ (m & INT32_MIN));
+}
+
+static inline struct wide3 wide3_negate(wide_mask m, struct wide3 a) {
+    return (struct wide3){wide_negate(m, a.x), wide_negate(m, a.y), wide_negate(m, a.z)};
+}
+
+// Four numbers that lie together in memory for each lane: out[k] lane i is row[i][k].
+static inline void wide_gather4(const float *const row[WIDE_LANES], wide out[4]) {
+#if defined(__AVX512F__)
+    __m512 r[4];
+    for (int k = 0; k < 4; k++) {
+        r[k] = _mm512_castps128_ps512(_mm_loadu_ps(row[k]));
+        r[k] = _mm512_insertf32x4(r[k], _mm_loadu_ps(row[k + 4]), 1);
+        r[k] = _mm512_insertf32x4(r[k], _mm_loadu_ps(row[k + 8]), 2);
+        r[k] = _mm512_insertf32x4(r[k], _mm_loadu_ps(row[k + 12]), 3);
+    }
+    const __m512d a = (__m512d)_mm512_unpacklo_ps(r[0], r[1]);
+    const __m512d b = (__m512d)_mm512_unpackhi_ps(r[0], r[1]);
+    const __m512d c = (__m512d)_mm512_unpacklo_ps(r[2], r[3]);
+    const __m512d d = (__m512d)_mm512_unpackhi_ps(r[2], r[3]);
+    out[0] = (wide)_mm512_unpacklo_pd(a, c);
+    out[1] = (wide)_mm512_unpackhi_pd(a, c);
+    out[2] = (wide)_mm512_unpacklo_pd(b, d);
+    out[3] = (wide)_mm512_unpackhi_pd(b, d);
+#else
+    for (int i = 0; i < WIDE_LANES; i++)
+        for (int k = 0; k < 4; k++)
+            out[k][i] = row[i][k];
+#endif
+}
+
+// The way back; rows do not overlap, except that lanes nobody wants may share one.
+static inline void wide_scatter4(const wide in[4], float *const row[WIDE_LANES]) {
+#if defined(__AVX512F__)
+    const __m512d a = (__m512d)_mm512_unpacklo_ps((__m512)in[0], (__m512)in[1]);
+    const __m512d b = (__m512d)_mm512_unpackhi_ps((__m512)in[0], (__m512)in[1]);
+    const __m512d c = (__m512d)_mm512_unpacklo_ps((__m512)in[2], (__m512)in[3]);
+    const __m512d d = (__m512d)_mm512_unpackhi_ps((__m512)in[2], (__m512)in[3]);
+    const __m512 r[4] = {(__m512)_mm512_unpacklo_pd(a, c), (__m512)_mm512_unpackhi_pd(a, c),
+                         (__m512)_mm512_unpacklo_pd(b, d), (__m512)_mm512_unpackhi_pd(b, d)};
+    for (int k = 0; k < 4; k++) {
+        _mm_storeu_ps(row[k], _mm512_castps512_ps128(r[k]));
+        _mm_storeu_ps(row[k + 4], _mm512_extractf32x4_ps(r[k], 1));
+        _mm_storeu_ps(row[k + 8], _mm512_extractf32x4_ps(r[k], 2));
+        _mm_storeu_ps(row[k + 12], _mm512_extractf32x4_ps(r[k], 3));
+    }
+#else
+    for (int i = 0; i < WIDE_LANES; i++)
+        for (int k = 0; k < 4; k++)
+            row[i][k] = in[k][i];
+#endif
 }

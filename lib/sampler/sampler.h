@@ -12,6 +12,7 @@
 #include "base/registry.h"
 #include "math/hash.h"
 #include "math/vec.h"
+#include "math/wide_hash.h"
 
 struct sampler {
     const struct sampler_type *type;
@@ -22,11 +23,18 @@ struct sampler {
     uint32_t reversed;  // bits of index, mirrored
 };
 
+// The samplers of sixteen lanes, as far as numbers depend on them.
+struct sampler_lanes {
+    wide_uint seed, index, reversed;
+};
+
 struct sampler_type {
     struct entry entry;
     float (*next_1d)(struct sampler *s); // in [0, 1)
     struct vec2 (*next_2d)(struct sampler *s);
     bool counted;     // points are laid out for a number of samples: others for another number
+    // next_2d of each lane for the dimension given; u[0] is also next_1d. NULL: one by one.
+    void (*draw_wide)(const struct sampler_lanes *s, wide_uint dimension, wide u[2]);
     bool independent; // points are independent: the running variance is a true error estimate
 };
 

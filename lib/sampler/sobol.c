@@ -78,8 +78,44 @@ static struct vec2 next_2d(struct sampler *s) {
     return (struct vec2){uniform_float((uint32_t)both), uniform_float((uint32_t)(both >> 32))};
 }
 
+static wide_uint reverse_wide(wide_uint x) {
+    x = x >> 16 | x << 16;
+    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
+    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+    return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+}
+
+static wide_uint scramble_reversed_wide(wide_uint x, wide_uint seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+static wide_uint second_dimension_reversed_wide(wide_uint index) {
+    index ^= index >> 16;
+    index ^= (index & 0xff00ff00u) >> 8;
+    index ^= (index & 0xf0f0f0f0u) >> 4;
+    index ^= (index & 0xccccccccu) >> 2;
+    return index ^ (index & 0xaaaaaaaau) >> 1;
+}
+
+static void draw_wide(const struct sampler_lanes *s, wide_uint dimension, wide u[2]) {
+    const struct wide_u64 a = wide_hash_u64(wide_join(s->seed, dimension));
+    const struct wide_u64 b = {a.a * 0xd1342543de82ef95u, a.b * 0xd1342543de82ef95u};
+    const wide_uint index = reverse_wide(scramble_reversed_wide(s->reversed, wide_low_word(a)));
+    const wide_uint x = scramble_reversed_wide(index, wide_high_word(a));
+    const wide_uint y =
+        scramble_reversed_wide(second_dimension_reversed_wide(index), wide_high_word(b));
+    u[0] = wide_uniform_float(reverse_wide(x));
+    u[1] = wide_uniform_float(reverse_wide(y));
+}
+
 const struct sampler_type sampler_sobol = {
     .entry = {.name = "sobol", .help = "Owen-scrambled Sobol points (Burley 2020)",
               .aliases = aliases, .params = params, .size = sizeof(struct sampler_settings)},
-    .next_1d = next_1d, .next_2d = next_2d,
+    .next_1d = next_1d, .next_2d = next_2d, .draw_wide = draw_wide,
 };

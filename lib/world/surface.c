@@ -22,6 +22,18 @@ static void triangle_derivatives(const struct world_shape *m, const uint32_t i[3
     point->dpdv = (du1 * e2 - du2 * e1) * inv;
 }
 
+struct texture_point world_texture_point(const struct world_shape *m, const struct accel_hit *hit) {
+    const float b1 = hit->u, b2 = hit->v, b0 = 1 - b1 - b2;
+    struct texture_point at = {{b1, b2}, m->mesh, hit->primitive, {b1, b2}};
+    if (m->uvs) {
+        const uint32_t *i = m->indices[hit->primitive];
+        const float *t0 = m->uvs[i[0]], *t1 = m->uvs[i[1]], *t2 = m->uvs[i[2]];
+        at.uv = (struct vec2){b0 * t0[0] + b1 * t1[0] + b2 * t2[0],
+                              b0 * t0[1] + b1 * t1[1] + b2 * t2[1]};
+    }
+    return at;
+}
+
 static void triangle_surface(const struct world_shape *m, const struct accel_hit *hit,
                              bool tangents, struct surface *s) {
     const uint32_t *i = m->indices[hit->primitive];
@@ -40,14 +52,9 @@ static void triangle_surface(const struct world_shape *m, const struct accel_hit
             ns = s->ng;
     }
     s->point.dpdu = s->point.dpdv = (vec3){0};
-    s->point.at = (struct texture_point){{b1, b2}, m->mesh, hit->primitive, {b1, b2}};
-    if (m->uvs) {
-        const float *t0 = m->uvs[i[0]], *t1 = m->uvs[i[1]], *t2 = m->uvs[i[2]];
-        s->point.at.uv = (struct vec2){b0 * t0[0] + b1 * t1[0] + b2 * t2[0],
-                                       b0 * t0[1] + b1 * t1[1] + b2 * t2[1]};
-        if (tangents)
-            triangle_derivatives(m, i, e1, e2, &s->point);
-    }
+    s->point.at = world_texture_point(m, hit);
+    if (m->uvs && tangents)
+        triangle_derivatives(m, i, e1, e2, &s->point);
     s->point.frame.n = ns;
 }
 

@@ -46,6 +46,18 @@ static bool prepare_bsdfs(struct world *w, struct scene *s) {
     return true;
 }
 
+static void find_lambert(struct world *w, const struct scene *s) {
+    struct lambert l;
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        struct world_shape *shape = &w->shapes[i];
+        if (shape->kind != SHAPE_MESH || s->shapes[i].group != SCENE_NONE ||
+            !bsdf_is_lambert(shape->bsdf, &l))
+            continue;
+        shape->reflectance = l.reflectance;
+        shape->two_sided = l.two_sided;
+    }
+}
+
 static bool prepare_lights(struct world *w, struct scene *s) {
     w->light_count = s->light_count;
     w->lights = mem_array(s->light_count, sizeof *w->lights);
@@ -131,6 +143,7 @@ struct world *world_create(struct scene *s, int threads) {
     if (!init_transforms(w, s) || !prepare_textures(s) || !prepare_bsdfs(w, s) || !prepare_lights(w, s) ||
         !prepare_media(w, s))
         goto fail;
+    find_lambert(w, s);
     const double start = time_seconds();
     w->accel = accel_create(s, threads);
     w->accel_seconds = time_seconds() - start;

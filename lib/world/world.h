@@ -4,6 +4,7 @@
 
 #include "accel/accel.h"
 #include "bsdf/bsdf.h"
+#include "math/wide_maps.h"
 #include "medium/medium.h"
 #include "scene/scene.h"
 #include "world/light_choice.h"
@@ -26,6 +27,8 @@ struct world_shape {
     uint32_t light;             // or SCENE_NONE
     uint8_t kind;               // enum shape_kind
     bool flip_normals;
+    bool two_sided;                      // of reflectance
+    const struct texture_ref *reflectance; // of a mesh with Lambert's law; NULL: anything else
 };
 
 // The media of both sides of a shape, SCENE_NONE for a vacuum.
@@ -88,8 +91,24 @@ struct surface {
     uint32_t shape, primitive, instance;
 };
 
+// Sixteen such, of triangles that are not instanced, without what only textures need. Lanes that are
+// not wanted have the hit of one that is.
+struct surfaces {
+    struct wide3 p, p_error, ng;
+    struct wide_frame frame;
+};
+
+void world_surfaces(const struct world *w, const struct accel_hit *const hits[WIDE_LANES],
+                    struct surfaces *s);
+// The texture coordinates at a hit of a mesh.
+struct texture_point world_texture_point(const struct world_shape *m, const struct accel_hit *hit);
+
 void world_surface(const struct world *w, const struct ray *ray, const struct accel_hit *hit,
                    struct surface *s);
+
+static inline struct wide3 surfaces_offset(const struct surfaces *s, struct wide3 w) {
+    return wide_offset_point(s->p, s->p_error, s->ng, w);
+}
 
 // Origin of a ray that leaves the surface on the side w points to.
 static inline vec3 surface_offset(const struct surface *s, vec3 w) {

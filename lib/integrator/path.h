@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the path tracer keeps of its paths, and the shading of many at once.
+#pragma once
+
+#include "integrator/vertex.h"
+
+struct path {
+    int max_depth, rr_depth;
+    bool hide_emitters, strict_normals;
+    int light_choice;
+};
+
+// Dimensions of the random numbers: those of the camera, then so many for each vertex, whether or
+// not it needs them all, so that each purpose keeps its own well-distributed points.
+enum {
+    CAMERA_DIMENSIONS = 4,
+    VERTEX_DIMENSIONS = 8,
+    DRAW_LIGHT_POINT = 0,
+    DRAW_DIRECTION = 2,
+    DRAW_LIGHT = 4,
+    DRAW_LOBE = 5,
+    DRAW_ROULETTE = 6,
+};
+
+enum {
+    LEAST_IN_PACKET = 4, // rays: fewer are faster one by one
+    MOST_LANES = SINK_MOST_LANES,
+};
+
+struct lane {
+    struct ray ray;
+    spectrum beta;
+    struct path_origin from;
+    struct sampler sampler;
+    float eta2; // product of the squared relative indices crossed: refraction's radiance scaling
+    uint32_t events; // vertices, null ones included
+    bool alive, first_done;
+    struct shadow_test shadow;
+};
+
+// Up to sixteen lanes of a wave, by index.
+struct packet {
+    const uint16_t *lanes;
+    int count;
+};
+
+static inline bool path_may_contribute(const struct path *p, uint32_t edges) {
+    return p->max_depth < 0 || edges < (uint32_t)p->max_depth;
+}
+
+// One vertex of those lanes of a packet that met a Lambertian triangle, as far as it is worth it:
+// the same as one by one, with the same bits. A bit for every lane that is done.
+uint32_t path_shade_lambert(const struct path *p, struct trace_context *ctx, struct lane *lanes,
+                            const struct packet *packet, const struct accel_hit *hits);
