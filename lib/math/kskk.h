@@ -39,3 +39,7 @@ static inline double kskk_weight(const struct kskk *k, const struct half_vector 
     return (k->transmits ? 1 - F : F) * v->cos_i /
            (v->cos_h * pow(v->cos_o * v->cos_i, k->alpha));
 }
+
+// What the lobe reflects (or transmits) of all that arrives, seen from a direction with that cosine
+// and azimuth: the integral of f cos_i. Without bound for alpha > 1/2 towards cos_o = 0. To 1e-5 of itself.
+double kskk_albedo(const struct kskk *k, double cos_o, double phi_o);
