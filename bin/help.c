@@ -7,6 +7,7 @@
 #include "driver/job.h"
 #include "help_materials.h"
 #include "mesh/mesh.h"
+#include "phase/phase.h"
 #include "scene/language.h"
 #include "subcommand.h"
 
@@ -27,6 +28,9 @@ static const struct kind kinds[] = {
     KIND("texture", "values that vary over a surface", "texture", &textures),
     {{"light", "sources of light", light_aliases, NULL, 0}, "emitter", &lights},
     KIND("sensor", "cameras", "sensor", &sensors),
+    KIND("medium", "what fills the space between surfaces", "medium", &media),
+    KIND("phase", "how media scatter, inside a medium", "phase", &phases),
+    KIND("volume", "values that vary in space, inside a medium", "volume", &volumes),
     KIND("film", "the picture, inside a sensor", "film", &scene_films),
     {{"filter", "reconstruction filters, inside a film", filter_aliases, NULL, 0}, "rfilter",
      &filters},
@@ -41,7 +45,8 @@ enum { KINDS = sizeof kinds / sizeof *kinds };
 static const struct entry *const kind_entries[] = {
     &kinds[0].entry, &kinds[1].entry, &kinds[2].entry, &kinds[3].entry,  &kinds[4].entry,
     &kinds[5].entry, &kinds[6].entry, &kinds[7].entry, &kinds[8].entry,  &kinds[9].entry,
-    &kinds[10].entry, &kinds[11].entry, &kinds[12].entry, NULL};
+    &kinds[10].entry, &kinds[11].entry, &kinds[12].entry, &kinds[13].entry, &kinds[14].entry,
+    &kinds[15].entry, NULL};
 _Static_assert(sizeof kind_entries / sizeof *kind_entries == KINDS + 1, "a kind is not listed");
 static const struct registry kind_registry = {"kind", kind_entries};
 

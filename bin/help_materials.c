@@ -6,6 +6,7 @@
 
 #include "base/registry.h"
 #include "math/ior.h"
+#include "medium/named.h"
 
 static void print_conductor(const char *name) {
     spectrum eta, k;
@@ -20,6 +21,16 @@ static void print_dielectric(const char *name) {
     printf("  %-28s%.6g\n", name, (double)ior);
 }
 
+static void print_medium(const char *name) {
+    struct medium_point c;
+    float g;
+    named_medium_find(name, (struct where){0}, &c, &g);
+    const spectrum a = c.sigma_t - c.sigma_s;
+    printf("  %-28s%9.5g %9.5g %9.5g  %9.5g %9.5g %9.5g  %5.3f\n", name, (double)c.sigma_s[0],
+           (double)c.sigma_s[1], (double)c.sigma_s[2], (double)a[0], (double)a[1], (double)a[2],
+           (double)g);
+}
+
 void help_list_materials(void) {
     printf("Values of int_ior and ext_ior (dielectrics):\n\n");
     for (size_t i = 0; ior_dielectric_name(i); i++)
@@ -27,6 +38,9 @@ void help_list_materials(void) {
     printf("\nValues of material (metals), eta and k in linear Rec.709; none reflects all:\n\n");
     for (size_t i = 0; ior_conductor_name(i); i++)
         print_conductor(ior_conductor_name(i));
+    printf("\nValues of material (homogeneous media), sigma_s and sigma_a in 1/mm, mean cosine:\n\n");
+    for (size_t i = 0; named_medium_name(i); i++)
+        print_medium(named_medium_name(i));
 }
 
 bool help_material(const char *name) {

@@ -63,10 +63,11 @@ static void override_int(struct object *o, const char *name, int value) {
 }
 
 static bool prepare_integrator(const struct job_options *o, struct scene *s, struct world *w,
-                               struct film_options *film) {
+                               struct method *method, struct film_options *film) {
     struct integrator_wants wants = {0};
     if (o->max_depth)
         override_int(s->integrator, "max_depth", o->max_depth);
+    method_choose(s, w, method);
     const struct integrator_type *type = integrator_type_of(s->integrator);
     if (type->prepare && !type->prepare(s->integrator, &wants))
         return false;
@@ -121,7 +122,8 @@ static bool prepare(struct job *job, const struct job_options *o) {
     job->film = (struct film_options){.alpha = s->film.alpha, .paths = o->paths,
                                       .variance = o->variance || o->noise > 0};
     if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
-        !choose_crop(o, &s->film, &job->film) || !prepare_integrator(o, s, job->world, &job->film) ||
+        !choose_crop(o, &s->film, &job->film) ||
+        !prepare_integrator(o, s, job->world, &job->method, &job->film) ||
         !sensor->prepare(s->sensors[0], s->film.width, s->film.height, s->centre) ||
         (o->light_groups && !light_groups_init(&job->groups, s)) ||
         !filter_sampler_init(&job->filter, s->filter))

@@ -4,6 +4,7 @@
 
 #include "base/options.h"
 #include "driver/light_groups.h"
+#include "driver/method.h"
 #include "driver/render.h"
 
 struct job_options {
@@ -32,6 +33,7 @@ struct job {
     struct filter_sampler filter;
     struct film_options film;
     struct render_options render;
+    struct method method;  // of rendering
     uint64_t defines_hash; // of the -D values
     double load_seconds; // reading and building
     uint64_t triangles;

@@ -29,6 +29,9 @@ static void add_view(const struct job *job, struct json *out) {
     json_add_text(out, "sampler", s->sampler->type->name);
     json_add_count(out, "samples", job->render.spp);
     json_add_text(out, "integrator", s->integrator->type->name);
+    json_add_text(out, "method", job->method.used);
+    json_add_text(out, "method_asked", job->method.asked);
+    json_add_text(out, "method_because", job->method.why);
 }
 
 // The integrator's numbers and switches, and those of what it wraps.
@@ -79,6 +82,23 @@ static uint32_t lobes_in_use(const struct scene *s) {
     return lobes;
 }
 
+// Of the media that vary in space, or whose extinction is coloured.
+static uint32_t count_media(const struct world *w, bool coloured) {
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < w->scene->medium_count; i++)
+        n += coloured ? !w->media[i].grey : !w->media[i].homogeneous;
+    return n;
+}
+
+static int64_t volume_bytes(const struct scene *s) {
+    size_t sum = 0;
+    for (uint32_t i = 0; i < s->volume_count; i++) {
+        const struct volume_type *type = volume_type_of(s->volumes[i]);
+        sum += type->bytes ? type->bytes(s->volumes[i]->data) : 0;
+    }
+    return (int64_t)sum;
+}
+
 // Every feature stands in one of two lists: what rendering this scene runs, and what it does not.
 static void add_features(const struct job *job, const struct scene_summary *s, struct json *out) {
     const struct world *w = job->world;
@@ -102,6 +122,9 @@ static void add_features(const struct job *job, const struct scene_summary *s, s
         {"environment", w->infinite_count > 0},
         {"light-choice", w->choice.draws},
         {"light-tree", w->choice.has_tree},
+        {"media", w->media != NULL},
+        {"grid-media", count_media(w, false) > 0},
+        {"coloured-extinction", count_media(w, true) > 0},
         {"recentring", s->recentred},
         {"alpha", job->film.alpha},
     };
@@ -114,6 +137,7 @@ static void add_features(const struct job *job, const struct scene_summary *s, s
 static void add_memory(const struct job *job, const struct scene_summary *s, struct json *out) {
     struct json *bytes = json_add_object(out, "bytes");
     json_add_count(bytes, "meshes", (int64_t)s->mesh_bytes);
+    json_add_count(bytes, "volumes", volume_bytes(job->scene));
     json_add_count(bytes, "acceleration_structure", (int64_t)accel_bytes(job->world->accel));
     json_add_count(bytes, "light_choice", (int64_t)light_choice_bytes(&job->world->choice));
     json_add_count(bytes, "film", (int64_t)film_bytes(&job->film, job->render.spp));
@@ -134,6 +158,9 @@ void scene_info_add(const struct job *job, struct json *out) {
     add_uses(&s, "bsdf", "materials", out);
     add_uses(&s, "texture", "textures", out);
     add_uses(&s, "light", "lights", out);
+    add_uses(&s, "medium", "media", out);
+    add_uses(&s, "phase", "phase_functions", out);
+    add_uses(&s, "volume", "volumes", out);
     add_features(job, &s, out);
     add_memory(job, &s, out);
     json_add_text(out, "ray_tracing", accel_version());

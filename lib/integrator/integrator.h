@@ -46,6 +46,7 @@ struct integrator_type {
     bool (*prepare)(struct object *self, struct integrator_wants *wants);
     void (*trace)(const void *data, struct trace_context *ctx, const struct path_start *starts);
     uint32_t most_lanes; // of one call; 0: SINK_LANES
+    bool sees_media;
 };
 
 // How lights are chosen, for integrators that sample them: an int, to be passed on by prepare.

@@ -311,6 +311,12 @@ static void start(struct walker *w, const struct path_start *from) {
     w->ctx->paths++;
 }
 
+bool volume_path_prepare(struct object *self, struct integrator_wants *wants) {
+    const struct volume_path *p = self->data;
+    wants->light_choice = (enum light_choice_mode)p->light_choice;
+    return true;
+}
+
 void volume_path_trace(const void *data, struct trace_context *ctx,
                        const struct path_start starts[SINK_LANES]) {
     for (int i = 0; i < SINK_LANES; i++) {

@@ -10,6 +10,7 @@
 struct volume_path {
     int max_depth, rr_depth;
     bool hide_emitters, strict_normals;
+    int light_choice;
     bool spectral; // medium/tracking.h: follow one lane and carry the densities of all
 };
 
@@ -24,7 +25,9 @@ struct volume_path {
         {"strict_normals", PARAM_BOOL, offsetof(struct volume_path, strict_normals),               \
          .def = "false", .unit = "",                                                               \
          .help = "drop directions on which shading and geometric normal disagree"},                \
+        INTEGRATOR_LIGHT_CHOICE(struct volume_path, light_choice),                                 \
         {"version", PARAM_IGNORED}, INTEGRATOR_IGNORED
 
+bool volume_path_prepare(struct object *self, struct integrator_wants *wants);
 void volume_path_trace(const void *data, struct trace_context *ctx,
                        const struct path_start starts[SINK_LANES]);

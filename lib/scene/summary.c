@@ -74,6 +74,12 @@ void scene_summary_init(struct scene_summary *summary, const struct scene *scene
     }
     for (uint32_t i = 0; i < scene->texture_count; i++)
         count_use(&c, "texture", scene->textures[i]->type->name);
+    for (uint32_t i = 0; i < scene->medium_count; i++)
+        count_use(&c, "medium", scene->media[i]->type->name);
+    for (uint32_t i = 0; i < scene->phase_count; i++)
+        count_use(&c, "phase", scene->phases[i]->type->name);
+    for (uint32_t i = 0; i < scene->volume_count; i++)
+        count_use(&c, "volume", scene->volumes[i]->type->name);
     for (uint32_t i = 0; i < scene->light_count; i++) {
         count_use(&c, "light", scene->lights[i].object->type->name);
         summary->textured_parameters += textured(scene->lights[i].object);
