@@ -4,6 +4,7 @@
 // The sky is sampled from a table of its luminance in cells of equal solid angle, the sun from its
 // cone; the density is the mixture of both wherever a direction comes from.
 #include "light/light.h"
+#include "light/preetham.h"
 #include "light/sun_position.h"
 #include "light/sunsky_model.h"
 #include "light/turn.h"
@@ -21,11 +22,12 @@ struct sunsky {
     int year, month, day;
     float hour, minute, second;
     float sun_scale, sky_scale, scale, sun_aperture, sun_radius_scale;
-    int up;
+    int up, model;
     struct transform to_world;
     // made by prepare
     struct affine world, local; // rotations; local z is up
     struct sky_model sky;
+    struct preetham_sky preetham;
     struct sun_model disk;
     struct frame sun;           // local, n towards the sun
     float half_aperture, sin_aperture;
@@ -39,6 +41,7 @@ struct sunsky {
 };
 
 static const char *const ups[] = {"z", "y", NULL};
+static const char *const models[] = {"hosek", "preetham", NULL};
 
 #define NUMBER(member, default_, min_, max_, unit_, help_)                                         \
     {#member, PARAM_FLOAT, offsetof(struct sunsky, member), .def = default_, .min = min_,          \
@@ -70,6 +73,9 @@ static const struct param params[] = {
     {"up", PARAM_CHOICE, offsetof(struct sunsky, up), .def = "z", .unit = "",
      .help = "axis of the zenith before to_world: z as in version 3, y as in 0.5",
      .choices = ups},
+    {"model", PARAM_CHOICE, offsetof(struct sunsky, model), .def = "hosek", .unit = "",
+     .help = "of the sky: Hosek, Wilkie 2012 or Preetham et al. 1999 (which has no albedo)",
+     .choices = models},
     {"to_world", PARAM_TRANSFORM, offsetof(struct sunsky, to_world), .def = "", .unit = "",
      .help = "rotates the sky"},
     {"resolution", PARAM_IGNORED, .unit = "", .help = "the model is evaluated exactly"},
@@ -90,12 +96,17 @@ static spectrum sun_radiance(const struct sunsky *s, vec3 w, float gamma) {
            sun_model_eval(&s->disk, asinf(clampf(w[2], -1, 1)), safe_sqrt(1 - sine * sine));
 }
 
+static spectrum sky_radiance(const struct sunsky *s, vec3 w, float height, float gamma) {
+    return s->model ? preetham_sky_eval(&s->preetham, w[2], 1 - height, gamma)
+                    : sky_model_eval(&s->sky, w[2], 1 - height, gamma);
+}
+
 static spectrum radiance(const struct sunsky *s, vec3 w) {
     if (s->dark || !(w[2] >= 0))
         return spectrum_grey(0);
     const float height = height_from_sun(s, w);
     const float gamma = 2 * asinf(minf(sqrtf(0.5f * height), 1));
-    spectrum sum = s->sky_factor * sky_model_eval(&s->sky, w[2], 1 - height, gamma);
+    spectrum sum = s->sky_factor * sky_radiance(s, w, height, gamma);
     if (height <= s->cone_height)
         sum += sun_radiance(s, w, gamma);
     return sum;
@@ -123,8 +134,7 @@ static double init_table(struct sunsky *s) {
                                               (float)x + 0.25f + 0.5f * (float)(i % 2));
                 const float height = height_from_sun(s, w);
                 const float gamma = 2 * asinf(minf(sqrtf(0.5f * height), 1));
-                weights[y][x] += 0.25f * spectrum_luminance(
-                                             sky_model_eval(&s->sky, w[2], 1 - height, gamma));
+                weights[y][x] += 0.25f * spectrum_luminance(sky_radiance(s, w, height, gamma));
             }
             total += (double)weights[y][x];
         }
@@ -182,7 +192,10 @@ static void init_models(struct sunsky *s) {
     s->sky_factor = s->scale * s->sky_scale;
     s->sun_factor = s->scale * s->sun_scale *
                     (float)(2 * sin(true_half / 2) * sin(true_half / 2) / height);
-    sky_model_init(&s->sky, (double)s->turbidity, s->albedo, elevation);
+    if (s->model)
+        preetham_sky_init(&s->preetham, (double)s->turbidity, elevation);
+    else
+        sky_model_init(&s->sky, (double)s->turbidity, s->albedo, elevation);
     sun_model_init(&s->disk, (double)s->turbidity, elevation, half);
 }
 

@@ -94,23 +94,37 @@ static const char *snake_case(const char *name, struct arena *arena) {
     return out;
 }
 
+static void append_text(struct reader *r, struct xml_node *node, const char *tag,
+                        const char *name, const char *value) {
+    struct xml_node *child = xml_new(tag, node->at, r->arena);
+    xml_set(child, "name", name, r->arena);
+    xml_set(child, "value", value, r->arena);
+    xml_append(node, child);
+}
+
+// Version 3 has one light for the sky, whose zenith is z, and the sun.
+static void upgrade_sky(struct reader *r, struct xml_node *node) {
+    const char *type = xml_get(node, "type");
+    const bool sky = type && strcmp(type, "sky") == 0, sun = type && strcmp(type, "sun") == 0;
+    if (!sky && !sun && !(type && strcmp(type, "sunsky") == 0))
+        return;
+    append_text(r, node, "string", "up", "y");
+    if (sky)
+        append_text(r, node, "float", "sun_scale", "0");
+    if (sun)
+        append_text(r, node, "float", "sky_scale", "0");
+    xml_set(node, "type", "sunsky", r->arena);
+}
+
 static void upgrade(struct reader *r, struct xml_node *node) {
     for (int i = 0; i < TAGS; i++)
         if (tags[i].was && strcmp(tags[i].was, node->tag) == 0)
             node->tag = tags[i].name;
+    if (strcmp(node->tag, "emitter") == 0)
+        upgrade_sky(r, node);
     const char *type = xml_get(node, "type");
-    if (strcmp(node->tag, "emitter") == 0 && type && strcmp(type, "sunsky") == 0) {
-        struct xml_node *up = xml_new("string", node->at, r->arena); // version 3's zenith is z
-        xml_set(up, "name", "up", r->arena);
-        xml_set(up, "value", "y", r->arena);
-        xml_append(node, up);
-    }
-    if (strcmp(node->tag, "volume") == 0 && type && strcmp(type, "gridvolume") == 0) {
-        struct xml_node *box = xml_new("boolean", node->at, r->arena); // version 3 ignores the file's
-        xml_set(box, "name", "use_grid_bbox", r->arena);
-        xml_set(box, "value", "true", r->arena);
-        xml_append(node, box);
-    }
+    if (strcmp(node->tag, "volume") == 0 && type && strcmp(type, "gridvolume") == 0)
+        append_text(r, node, "boolean", "use_grid_bbox", "true"); // version 3 ignores the file's
     const char *name = xml_get(node, "name");
     if (name && strcmp(node->tag, "default") != 0)
         xml_set(node, "name", snake_case(name, r->arena), r->arena);

@@ -293,8 +293,13 @@ static spectrum mean(const void *data) {
     return ((const struct bitmap *)data)->mean;
 }
 
+static void size(const void *data, int *width, int *height) {
+    *width = ((const struct bitmap *)data)->width;
+    *height = ((const struct bitmap *)data)->height;
+}
+
 const struct texture_type texture_bitmap = {
     .entry = {.name = "bitmap", .help = "a picture", .params = params,
               .size = sizeof(struct bitmap)},
-    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean, .finish = finish,
+    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean, .size = size, .finish = finish,
 };

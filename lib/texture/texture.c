@@ -10,6 +10,13 @@ static const struct entry *const entries[] = {
 
 const struct registry textures = {"texture", entries};
 
+void texture_size(const struct object *texture, int *width, int *height) {
+    const struct texture_type *type = texture_type_of(texture);
+    *width = *height = 1;
+    if (type->size)
+        type->size(texture->data, width, height);
+}
+
 struct vec2 texture_gradient(const struct texture_ref *r, const struct texture_point *at) {
     if (!r->texture)
         return (struct vec2){0, 0};

@@ -33,6 +33,8 @@ struct texture_type {
     struct vec2 (*gradient)(const void *data, const struct texture_point *at);
     // Mean over the unit square, for sampling decisions and previews.
     spectrum (*mean)(const void *data);
+    // In texels. NULL: it has none, and counts as 1 x 1.
+    void (*size)(const void *data, int *width, int *height);
     void (*finish)(void *data); // NULL: nothing to do
 };
 
@@ -60,4 +62,5 @@ static inline spectrum texture_mean(const struct texture_ref *r) {
     return r->texture ? texture_type_of(r->texture)->mean(r->texture->data) : r->value;
 }
 
+void texture_size(const struct object *texture, int *width, int *height);
 struct vec2 texture_gradient(const struct texture_ref *r, const struct texture_point *at);

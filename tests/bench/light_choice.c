@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// What choosing a light costs: on one thread, at the points that the camera's rays meet.
+//
+//     light_choice SCENE
+//
+// Prints, for each way of choosing, nanoseconds for a light sample and for the density of a hit,
+// and seconds and bytes of making it ready.
+#include <stdio.h>
+#include <time.h>
+
+#include "base/mem.h"
+#include "driver/job.h"
+#include "math/hash.h"
+
+enum { WIDTH = 160, HEIGHT = 120, REPEATS = 8 };
+
+struct places {
+    struct light_place *at;
+    int count;
+};
+
+static struct places find_places(const struct job *job) {
+    const struct object *sensor = job->scene->sensors[0];
+    struct places p = {.at = mem_array(WIDTH * HEIGHT, sizeof *p.at)};
+    for (int k = 0; k < WIDTH * HEIGHT; k++) {
+        struct ray ray;
+        struct accel_hit hit;
+        struct surface s;
+        sensor_type_of(sensor)->ray(sensor->data, (float)(k % WIDTH) + 0.5f,
+                                    (float)(k / WIDTH) + 0.5f, (struct vec2){0.5f, 0.5f}, &ray);
+        if (!accel_intersect(job->world->accel, &ray, &hit))
+            continue;
+        world_surface(job->world, &ray, &hit, &s);
+        const vec3 n = s.point.frame.n;
+        p.at[p.count++] = (struct light_place){s.p, dot(n, ray.d) > 0 ? -n : n};
+    }
+    return p;
+}
+
+// Of this thread, so that other programs disturb less.
+static double cpu_seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// Nanoseconds for one sample. Keeps a hit of each in `hits`, for the densities.
+static double time_samples(const struct world *w, const struct places *p, struct light_hit *hits,
+                           uint32_t *found) {
+    struct rng rng = {1};
+    const double start = cpu_seconds();
+    for (int r = 0; r < REPEATS; r++)
+        for (int i = 0; i < p->count; i++) {
+            struct light_sample l = {.wi = v3(0, 0, 1)};
+            const float u1 = rng_float(&rng);
+            const struct vec2 u2 = {rng_float(&rng), rng_float(&rng)};
+            found[i] = SCENE_NONE;
+            if (!world_sample_light(w, &p->at[i], u1, u2, &found[i], &l))
+                found[i] = SCENE_NONE;
+            hits[i] = (struct light_hit){.wi = l.wi, .distance = l.distance, .ng = l.n};
+        }
+    return (cpu_seconds() - start) * 1e9 / (REPEATS * (double)p->count);
+}
+
+static double time_densities(const struct world *w, const struct places *p,
+                             const struct light_hit *hits, const uint32_t *found) {
+    struct rng rng = {2};
+    double sum = 0;
+    size_t n = 0;
+    const double start = cpu_seconds();
+    for (int r = 0; r < REPEATS; r++)
+        for (int i = 0; i < p->count; i++) {
+            if (found[i] == SCENE_NONE || w->lights[found[i]].type->delta)
+                continue;
+            struct light_hit hit = hits[i];
+            const uint32_t parts = w->lights[found[i]].parts;
+            hit.at.triangle = parts ? rng_u32(&rng) % parts : 0;
+            sum += (double)world_light_pdf_sa(w, found[i], &p->at[i], &hit);
+            n++;
+        }
+    const double seconds = cpu_seconds() - start;
+    return n > 0 && sum >= 0 ? seconds * 1e9 / (double)n : 0;
+}
+
+int main(int argc, char **argv) {
+    if (argc != 2) {
+        fprintf(stderr, "usage: light_choice SCENE\n");
+        return 2;
+    }
+    const struct job_options options = {.scene = argv[1], .spp = 1, 
+                                        .reading = {.width = WIDTH, .height = HEIGHT,
+                                                    .lenient = true}};
+    struct job job;
+    if (!job_open(&job, &options))
+        return 1;
+    struct places p = find_places(&job);
+    struct light_hit *hits = mem_array((size_t)p.count, sizeof *hits);
+    uint32_t *found = mem_array((size_t)p.count, sizeof *found);
+    for (int mode = LIGHT_CHOICE_TREE; mode <= LIGHT_CHOICE_UNIFORM; mode++) {
+        const double start = cpu_seconds();
+        world_choose_lights(job.world, (enum light_choice_mode)mode);
+        const double ready = cpu_seconds() - start;
+        const double sample = time_samples(job.world, &p, hits, found);
+        const double density = time_densities(job.world, &p, hits, found);
+        printf("  %-8s %6.0f ns a sample, %6.0f ns a density, ready in %.3f s, %zu bytes\n",
+               light_choice_modes[mode], sample, density, ready,
+               light_choice_bytes(&job.world->choice));
+    }
+    mem_free(p.at);
+    mem_free(hits);
+    mem_free(found);
+    job_close(&job);
+    return 0;
+}
