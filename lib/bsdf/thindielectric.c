@@ -33,7 +33,9 @@ static float pane_reflectance(const struct thindielectric *self, vec3 wo) {
 }
 
 static uint32_t lobes(const void *data) {
-    (void)data;
+    const struct thindielectric *self = data;
+    if (self->index.int_ior == self->index.ext_ior)
+        return LOBE_NULL | LOBE_TRANSMISSION;
     return LOBE_SPECULAR | LOBE_NULL | LOBE_REFLECTION | LOBE_TRANSMISSION;
 }
 

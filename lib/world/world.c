@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "world/unseen.h"
 
 // Measured with tests/bench/packets: bounces of 16 lanes as a packet against single rays.
 enum { MOST_FOR_PACKETS = 2000 };
@@ -19,7 +20,11 @@ static void init_shapes(struct world *w, const struct scene *s) {
             .normals = (const void *)m->normals, .uvs = (const void *)m->uvs, .mesh = m,
             .bsdf = from->bsdf, .light = from->light, .kind = (uint8_t)from->kind,
             .flip_normals = from->flip_normals};
-        primitives += from->kind == SHAPE_MESH ? m->triangle_count : 1;
+        const uint32_t count = from->kind == SHAPE_MESH ? m->triangle_count : 1;
+        const uint32_t lobes = count ? bsdf_lobes(from->bsdf) : 0;
+        w->shadow_rays_may_pass |= (lobes & LOBE_NULL) != 0;
+        w->tangents_matter |= (lobes & LOBE_ANISOTROPIC) != 0;
+        primitives += count;
     }
     w->packets_pay = primitives <= MOST_FOR_PACKETS && s->instance_count == 0;
 }
@@ -33,15 +38,11 @@ static bool prepare_textures(struct scene *s) {
     return true;
 }
 
-static bool prepare_bsdfs(struct world *w, struct scene *s) {
+static bool prepare_bsdfs(struct scene *s) {
     for (uint32_t i = 0; i < s->bsdf_count; i++) {
-        struct object *o = s->bsdfs[i];
-        const struct bsdf_type *type = bsdf_type_of(o);
-        if (type->prepare && !type->prepare(o, &s->arena))
+        const struct bsdf_type *type = bsdf_type_of(s->bsdfs[i]);
+        if (type->prepare && !type->prepare(s->bsdfs[i], &s->arena))
             return false;
-        const uint32_t lobes = type->lobes(o->data);
-        w->shadow_rays_may_pass |= (lobes & LOBE_NULL) != 0;
-        w->tangents_matter |= (lobes & LOBE_ANISOTROPIC) != 0;
     }
     return true;
 }
@@ -139,9 +140,11 @@ struct world *world_create(struct scene *s, int threads) {
     w->radius = length(s->bounds_max - w->centre);
     if (!(w->radius > 0))
         w->radius = 1; // nothing, or a single point: any positive size will do
+    if (!prepare_textures(s) || !prepare_bsdfs(s))
+        goto fail;
+    world_drop_unseen(s);
     init_shapes(w, s);
-    if (!init_transforms(w, s) || !prepare_textures(s) || !prepare_bsdfs(w, s) || !prepare_lights(w, s) ||
-        !prepare_media(w, s))
+    if (!init_transforms(w, s) || !prepare_lights(w, s) || !prepare_media(w, s))
         goto fail;
     find_lambert(w, s);
     const double start = time_seconds();
