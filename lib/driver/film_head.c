@@ -51,9 +51,9 @@ static void add_made_of(struct json *made_of, const struct job *job) {
     json_add_text(made_of, "filter", text);
     // Points that are laid out for a number of samples are others for another number.
     snprintf(text, sizeof text, "%s %u", s->sampler->type->name,
-             job->render.sampler->counted ? job->render.spp : 0);
+             job->render.tracer.sampler->counted ? job->render.tracer.spp : 0);
     json_add_text(made_of, "sampler", text);
-    json_add_count(made_of, "replicates", job->render.replicates);
+    json_add_count(made_of, "replicates", job->render.tracer.replicates);
 }
 
 void film_head_set_crop(struct json *head, const struct film *film, const struct film_options *o) {

@@ -108,10 +108,12 @@ static bool set_render_options(struct job *job, const struct job_options *o) {
                  "--spp asks for more, and --sampler sobol can always go on",
                  s->sampler->type->name, spp);
     job->render = (struct render_options){
-        .sampler = sampler, .spp = (uint32_t)spp, .end = open_ended ? MOST_SAMPLES : (uint64_t)spp,
-        .seconds = o->seconds, .noise = o->noise, .seed = o->seed,
-        .replicates = job->film.variance ? FILM_REPLICATES : 1, .threads = o->threads,
-        .stop = o->stop, .progress = o->progress, .user = o->user};
+        .tracer = {.world = job->world, .sensor = s->sensors[0], .integrator = s->integrator,
+                   .filter = &job->filter, .sampler = sampler, .spp = (uint32_t)spp,
+                   .seed = o->seed, .replicates = job->film.variance ? FILM_REPLICATES : 1,
+                   .threads = o->threads, .stop = o->stop},
+        .end = open_ended ? MOST_SAMPLES : (uint64_t)spp, .seconds = o->seconds, .noise = o->noise,
+        .progress = o->progress, .user = o->user};
     job->film.seed = o->seed;
     return choose_range(o->samples, &job->render, &job->film.first);
 }
@@ -170,8 +172,7 @@ struct film *job_film(const struct job *job) {
 }
 
 void job_trace(struct job *job, struct film *film, struct render_result *result) {
-    const struct scene *s = job->scene;
-    render(job->world, s->sensors[0], s->integrator, &job->filter, film, &job->render, result);
+    render(film, &job->render, result);
 }
 
 struct film *job_render(struct job *job, struct render_result *result) {
@@ -188,7 +189,7 @@ bool job_image(const struct job *job, const struct film *film, const struct rend
     }
     if (!film_image(film, im))
         return false;
-    image_set_number(im, "relume.seed", job->render.seed);
+    image_set_number(im, "relume.seed", job->render.tracer.seed);
     image_set_number(im, "relume.seconds", result->seconds);
     return true;
 }

@@ -27,7 +27,7 @@ static void add_view(const struct job *job, struct json *out) {
         json_append_number(array, crop[i]);
     json_add_text(out, "filter", s->filter->type->name);
     json_add_text(out, "sampler", s->sampler->type->name);
-    json_add_count(out, "samples", job->render.spp);
+    json_add_count(out, "samples", job->render.tracer.spp);
     json_add_text(out, "integrator", s->integrator->type->name);
     json_add_text(out, "method", job->method.used);
     json_add_text(out, "method_asked", job->method.asked);
@@ -140,7 +140,7 @@ static void add_memory(const struct job *job, const struct scene_summary *s, str
     json_add_count(bytes, "volumes", volume_bytes(job->scene));
     json_add_count(bytes, "acceleration_structure", (int64_t)accel_bytes(job->world->accel));
     json_add_count(bytes, "light_choice", (int64_t)light_choice_bytes(&job->world->choice));
-    json_add_count(bytes, "film", (int64_t)film_bytes(&job->film, job->render.spp));
+    json_add_count(bytes, "film", (int64_t)film_bytes(&job->film, job->render.tracer.spp));
     json_add_count(bytes, "peak_while_loading", (int64_t)mem_peak());
 }
 

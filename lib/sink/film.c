@@ -8,13 +8,14 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "sink/film_layout.h"
+#include "sink/tile_grid.h"
 
 struct film {
     struct film_options options;
     struct film_layout layout;
-    int tiles_x, tiles_y, tile_x0, tile_y0; // the grid of tiles, in tiles
-    size_t tile_values;                     // doubles a tile takes
-    double *open[2];                        // sums of the unfinished block: committed, running
+    struct tile_grid grid;
+    size_t tile_values; // doubles a tile takes
+    double *open[2];    // sums of the unfinished block: committed, running
     int committed;
     struct sums sums;            // of finished blocks
     uint64_t block;              // the unfinished one
@@ -27,7 +28,7 @@ struct film_view {
     struct film *film;
     double *sums; // of the open tile
     uint32_t tile;
-    int x0, y0;
+    struct sink_area wanted;
     struct view_lane {
         double *pixel;    // NULL: outside the crop
         uint32_t replicate;
@@ -48,11 +49,8 @@ struct film *film_create(const struct film_options *options) {
     struct film *f = mem_array(1, sizeof *f);
     f->options = *options;
     film_layout_init(&f->layout, options);
-    f->tile_x0 = options->x0 / FILM_TILE;
-    f->tile_y0 = options->y0 / FILM_TILE;
-    f->tiles_x = (options->x1 + FILM_TILE - 1) / FILM_TILE - f->tile_x0;
-    f->tiles_y = (options->y1 + FILM_TILE - 1) / FILM_TILE - f->tile_y0;
-    f->tile_values = (size_t)FILM_TILE * FILM_TILE * f->layout.channels;
+    f->grid = tile_grid_over((struct sink_area){options->x0, options->y0, options->x1, options->y1});
+    f->tile_values = (size_t)SINK_TILE * SINK_TILE * f->layout.channels;
     for (int i = 0; i < 2; i++)
         f->open[i] = mem_array(film_values(f), sizeof *f->open[i]);
     sums_init(&f->sums, film_values(f));
@@ -81,7 +79,7 @@ size_t film_bytes(const struct film_options *options, uint64_t samples) {
 }
 
 uint32_t film_tile_count(const struct film *f) {
-    return (uint32_t)(f->tiles_x * f->tiles_y);
+    return tile_grid_count(&f->grid);
 }
 
 uint64_t film_samples(const struct film *f) {
@@ -150,10 +148,8 @@ void film_restore(struct film *f, struct sums *sums) {
 
 // Where the values of pixel (x, y) of the absolute grid begin in a node.
 static size_t pixel_values(const struct film *f, int x, int y) {
-    const int tx = x / FILM_TILE - f->tile_x0, ty = y / FILM_TILE - f->tile_y0;
-    const size_t tile = (size_t)(ty * f->tiles_x + tx);
-    const size_t inside = (size_t)(y % FILM_TILE * FILM_TILE + x % FILM_TILE);
-    return tile * f->tile_values + inside * f->layout.channels;
+    return tile_grid_find(&f->grid, x, y) * f->tile_values +
+           tile_grid_inside(x, y) * f->layout.channels;
 }
 
 void film_add_part(const struct film *whole, double *values, const struct film *part,
@@ -264,67 +260,48 @@ static void view_end(struct sink *s, int lane, float weight) {
         film_layout_add_aovs(l, at->pixel, &at->first, at->is_first_sample);
 }
 
-static const struct sink_type view_type = {view_begin, view_add, view_surface, view_covered,
-                                           view_end};
-
-struct film_view *film_view_create(struct film *f) {
-    struct film_view *v = mem_array(1, sizeof *v);
-    v->sink = (struct sink){&view_type, f->options.aovs != 0};
-    v->film = f;
-    v->sums = mem_array(f->tile_values, sizeof *v->sums);
-    v->slots = mem_array((size_t)SINK_MOST_LANES * f->layout.slots, sizeof *v->slots);
-    return v;
+static void view_open(struct sink *s, uint32_t tile, struct sink_area *wanted) {
+    struct film_view *v = (void *)s;
+    const struct film *f = v->film;
+    v->tile = tile;
+    v->wanted = *wanted = tile_grid_area(&f->grid, tile);
+    memcpy(v->sums, f->open[f->committed] + tile * f->tile_values,
+           f->tile_values * sizeof *v->sums);
 }
 
-void film_view_destroy(struct film_view *v) {
-    if (!v)
-        return;
+static void view_place(struct sink *s, int lane, int x, int y, uint32_t sample) {
+    struct film_view *v = (void *)s;
+    struct view_lane *l = &v->lanes[lane];
+    l->pixel = sink_area_has(&v->wanted, x, y)
+                   ? v->sums + tile_grid_inside(x, y) * v->film->layout.channels
+                   : NULL;
+    l->replicate = sample % FILM_REPLICATES;
+    l->is_first_sample = sample == 0;
+}
+
+static void view_close(struct sink *s) {
+    struct film_view *v = (void *)s;
+    struct film *f = v->film;
+    memcpy(f->open[f->committed ^ 1] + v->tile * f->tile_values, v->sums,
+           f->tile_values * sizeof *v->sums);
+}
+
+static void view_destroy(struct sink *s) {
+    struct film_view *v = (void *)s;
     mem_free(v->sums);
     mem_free(v->slots);
     mem_free(v);
 }
 
-struct sink *film_view_sink(struct film_view *v) {
+static const struct sink_type view_type = {
+    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin, .add = view_add,
+    .surface = view_surface, .covered = view_covered, .end = view_end, .destroy = view_destroy};
+
+struct sink *film_sink(struct film *f) {
+    struct film_view *v = mem_array(1, sizeof *v);
+    v->sink = (struct sink){&view_type, f->options.aovs != 0};
+    v->film = f;
+    v->sums = mem_array(f->tile_values, sizeof *v->sums);
+    v->slots = mem_array((size_t)SINK_MOST_LANES * f->layout.slots, sizeof *v->slots);
     return &v->sink;
-}
-
-void film_view_open(struct film_view *v, uint32_t tile) {
-    const struct film *f = v->film;
-    v->tile = tile;
-    v->x0 = (f->tile_x0 + (int)tile % f->tiles_x) * FILM_TILE;
-    v->y0 = (f->tile_y0 + (int)tile / f->tiles_x) * FILM_TILE;
-    memcpy(v->sums, f->open[f->committed] + tile * f->tile_values,
-           f->tile_values * sizeof *v->sums);
-}
-
-static int least(int a, int b) {
-    return a < b ? a : b;
-}
-
-static int most(int a, int b) {
-    return a > b ? a : b;
-}
-
-void film_view_clip(const struct film_view *v, int grid, int *x0, int *y0, int *x1, int *y1) {
-    const struct film_options *o = &v->film->options;
-    *x0 = most(v->x0, o->x0) / grid * grid;
-    *y0 = most(v->y0, o->y0) / grid * grid;
-    *x1 = (least(v->x0 + FILM_TILE, o->x1) + grid - 1) / grid * grid;
-    *y1 = (least(v->y0 + FILM_TILE, o->y1) + grid - 1) / grid * grid;
-}
-
-void film_view_lane(struct film_view *v, int lane, int x, int y, uint32_t sample) {
-    const struct film_options *o = &v->film->options;
-    const bool inside = x >= o->x0 && x < o->x1 && y >= o->y0 && y < o->y1;
-    const size_t pixel = (size_t)((y - v->y0) * FILM_TILE + (x - v->x0));
-    struct view_lane *l = &v->lanes[lane];
-    l->pixel = inside ? v->sums + pixel * v->film->layout.channels : NULL;
-    l->replicate = sample % FILM_REPLICATES;
-    l->is_first_sample = sample == 0;
-}
-
-void film_view_close(struct film_view *v) {
-    struct film *f = v->film;
-    memcpy(f->open[f->committed ^ 1] + v->tile * f->tile_values, v->sums,
-           f->tile_values * sizeof *v->sums);
 }

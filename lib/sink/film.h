@@ -10,7 +10,7 @@
 #include "sink/sink.h"
 #include "sink/sums.h"
 
-enum { FILM_TILE = 32, FILM_BLOCK = SUMS_BLOCK, FILM_REPLICATES = 16, FILM_MOST_GROUPS = 64 };
+enum { FILM_BLOCK = SUMS_BLOCK, FILM_REPLICATES = 16, FILM_MOST_GROUPS = 64 };
 
 enum film_aov {
     AOV_ALBEDO = 1,
@@ -51,18 +51,8 @@ bool film_aovs_parse(const char *list, uint32_t *aovs);
 
 // Tiles cover the crop; they lie on the absolute grid.
 uint32_t film_tile_count(const struct film *f);
-
-// One worker's view of the film: a sink whose lanes are tied to pixels. (x, y) may lie outside the
-// crop: such a lane is traced for its packet's sake and dropped.
-struct film_view;
-struct film_view *film_view_create(struct film *f);
-void film_view_destroy(struct film_view *v);
-struct sink *film_view_sink(struct film_view *v);
-void film_view_open(struct film_view *v, uint32_t tile);
-// Pixels of the open tile that lie in the crop, widened to multiples of `grid`.
-void film_view_clip(const struct film_view *v, int grid, int *x0, int *y0, int *x1, int *y1);
-void film_view_lane(struct film_view *v, int lane, int x, int y, uint32_t sample);
-void film_view_close(struct film_view *v); // stores the tile's sums as part of the running pass
+// A worker's view of the film; it must not outlive it.
+struct sink *film_sink(struct film *f);
 
 // The pass added `samples` samples to every tile; they must not cross a block.
 void film_commit(struct film *f, uint32_t samples);

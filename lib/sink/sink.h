@@ -6,8 +6,9 @@
 // bins by source or material and leaves that for later.
 //
 // Groups of sixteen samples (lanes) of different pixels run side by side, SINK_MOST_LANES lanes at
-// most; contributions of one lane arrive
-// between its begin and its end, in an order that depends on that lane's path alone.
+// most; contributions of one lane arrive between its begin and its end, in an order that depends on
+// that lane's path alone. Every worker has a sink of its own, a view of what is being summed, and
+// works on one tile of the absolute pixel grid at a time.
 #pragma once
 
 #include <stdint.h>
@@ -15,7 +16,7 @@
 #include "bsdf/bsdf.h"
 #include "math/vec.h"
 
-enum { SINK_LANES = 16, SINK_MOST_LANES = 256 };
+enum { SINK_LANES = 16, SINK_MOST_LANES = 256, SINK_TILE = 32 };
 
 struct contribution {
     spectrum weight;   // of the path: scattering, cosines, 1/pdf, MIS, roulette; no emission
@@ -37,12 +38,24 @@ struct sink_surface {
 
 struct sink;
 
+// Pixels x0 <= x < x1, y0 <= y < y1 of the absolute grid.
+struct sink_area {
+    int x0, y0, x1, y1;
+};
+
 struct sink_type {
+    // Goes to a tile; says which of its pixels are wanted.
+    void (*open)(struct sink *s, uint32_t tile, struct sink_area *wanted);
+    // Stores what the tile has gathered since open; without it that is forgotten.
+    void (*close)(struct sink *s);
+    // Ties a lane to a pixel. One that is not wanted is traced for its packet's sake and dropped.
+    void (*place)(struct sink *s, int lane, int x, int y, uint32_t sample);
     void (*begin)(struct sink *s, int lane);
     void (*add)(struct sink *s, int lane, const struct contribution *c);
     void (*surface)(struct sink *s, int lane, const struct sink_surface *first);
     void (*covered)(struct sink *s, int lane); // the sensor's ray hit something
     void (*end)(struct sink *s, int lane, float filter_weight);
+    void (*destroy)(struct sink *s);
 };
 
 struct sink {

@@ -142,7 +142,7 @@ int main(int argc, char **argv) {
     }
     struct bare b = {.job = &job, .scene = accel_embree_scene(job.world->accel),
                      .light = &job.scene->shapes[shape], .width = width, .height = height,
-                     .spp = (int)job.render.spp};
+                     .spp = (int)job.render.tracer.spp};
     b.pixels = mem_array((size_t)width * (size_t)height, sizeof *b.pixels);
     const double paths = (double)width * height * b.spp;
     double bare[REPEATS], product[REPEATS];

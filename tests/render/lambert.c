@@ -73,7 +73,7 @@ static void trace(const struct job *job, const struct response *response, struct
         struct path_start starts[LANES];
         for (uint32_t i = 0; i < LANES; i++) {
             const uint32_t x = i % 16, y = i / 16;
-            starts[i].sampler = sampler_start(job->render.sampler, x, y, k, SAMPLES, 1, 7);
+            starts[i].sampler = sampler_start(job->render.tracer.sampler, x, y, k, SAMPLES, 1, 7);
             const struct vec2 u = sampler_2d(&starts[i].sampler);
             sampler_2d(&starts[i].sampler);
             sensor->ray(s->sensors[0]->data, 2.5f * ((float)x + u.x), 3 * ((float)y + u.y), u,

@@ -167,7 +167,7 @@ static void render_one_by_one(const struct job_options *options, int spp, bool h
     for (int i = 0; i < spp; i++) {
         struct render_result result;
         struct image im;
-        job.render.seed = (uint32_t)i + 1;
+        job.render.tracer.seed = (uint32_t)i + 1;
         struct film *f = job_render(&job, &result);
         if (!job_image(&job, f, &result, &im))
             exit(1);

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver/tracer.h"
+
+#include <stdatomic.h>
+
+#include "base/mem.h"
+#include "base/thread.h"
+
+enum { PACKET_SIDE = 4 }; // a packet of 16 is a 4x4 block of the absolute pixel grid
+
+static const double STOP_SECONDS = 1.5; // a run may go on for this long after a stop
+
+struct worker {
+    struct trace_context ctx;
+    struct closure_stack stack;
+};
+
+struct tracer {
+    struct tracer_options options;
+    int threads;
+    struct worker *workers;
+    uint32_t first, count;    // samples of the run
+    atomic_bool abandoned;
+    _Atomic double stop_time; // when the stop was first seen; 0: not yet
+};
+
+// Groups of sixteen pixels that are traced in one call.
+struct batch {
+    uint32_t count, most; // lanes
+    struct path_start starts[SINK_MOST_LANES];
+    float weights[SINK_MOST_LANES];
+};
+
+// Adds the sixteen paths of one 4x4 block for one sample.
+static void start_paths(const struct tracer *t, struct worker *w, int x0, int y0, uint32_t sample,
+                        struct batch *b) {
+    const struct tracer_options *o = &t->options;
+    const struct sensor_type *sensor = sensor_type_of(o->sensor);
+    struct sink *sink = w->ctx.sink;
+    for (int i = 0; i < SINK_LANES; i++) {
+        const uint32_t lane = b->count++;
+        const int x = x0 + i % PACKET_SIDE, y = y0 + i / PACKET_SIDE;
+        struct sampler s = sampler_start(o->sampler, (uint32_t)x, (uint32_t)y, sample, o->spp,
+                                         o->replicates, o->seed);
+        const struct vec2 d = filter_sample(o->filter, sampler_2d(&s), &b->weights[lane]);
+        const struct vec2 lens = sampler_2d(&s);
+        sensor->ray(o->sensor->data, (float)x + 0.5f + d.x, (float)y + 0.5f + d.y, lens,
+                    &b->starts[lane].ray);
+        b->starts[lane].sampler = s;
+        sink->type->place(sink, (int)lane, x, y, sample);
+        sink->type->begin(sink, (int)lane);
+    }
+}
+
+static void trace_batch(const struct tracer *t, struct worker *w, struct batch *b) {
+    const struct tracer_options *o = &t->options;
+    struct sink *sink = w->ctx.sink;
+    w->ctx.lanes = b->count;
+    if (b->count)
+        integrator_type_of(o->integrator)->trace(o->integrator->data, &w->ctx, b->starts);
+    for (uint32_t i = 0; i < b->count; i++)
+        sink->type->end(sink, (int)i, b->weights[i]);
+    b->count = 0;
+}
+
+// Whether the pass is to be given up: a stop was asked for, and finishing takes too long.
+static bool give_up(struct tracer *t) {
+    if (!t->options.stop || !*t->options.stop)
+        return false;
+    const double now = time_seconds();
+    double none = 0;
+    atomic_compare_exchange_strong(&t->stop_time, &none, now);
+    if (now - atomic_load(&t->stop_time) > STOP_SECONDS)
+        atomic_store(&t->abandoned, true);
+    return atomic_load(&t->abandoned);
+}
+
+static void trace_tile(void *ctx, size_t tile, int index) {
+    struct tracer *t = ctx;
+    struct worker *w = &t->workers[index];
+    struct sink *sink = w->ctx.sink;
+    const uint32_t most = integrator_type_of(t->options.integrator)->most_lanes;
+    struct batch batch = {.count = 0, .most = most ? most : SINK_LANES};
+    struct sink_area wanted;
+    accel_thread_init();
+    if (give_up(t))
+        return;
+    sink->type->open(sink, (uint32_t)tile, &wanted);
+    const int x0 = wanted.x0 / PACKET_SIDE * PACKET_SIDE, y0 = wanted.y0 / PACKET_SIDE * PACKET_SIDE;
+    for (uint32_t s = t->first; s < t->first + t->count; s++) {
+        for (int y = y0; y < wanted.y1; y += PACKET_SIDE)
+            for (int x = x0; x < wanted.x1; x += PACKET_SIDE) {
+                start_paths(t, w, x, y, s, &batch);
+                if (batch.count == batch.most)
+                    trace_batch(t, w, &batch);
+            }
+        trace_batch(t, w, &batch); // a pixel's samples are added in order
+        if (give_up(t))
+            return;
+    }
+    sink->type->close(sink);
+}
+
+struct tracer *tracer_create(const struct tracer_options *options,
+                             struct sink *(*make_sink)(void *context), void *context) {
+    struct tracer *t = mem_array(1, sizeof *t);
+    t->options = *options;
+    t->threads = options->threads > 0 ? options->threads : thread_default_count();
+    t->workers = mem_array((size_t)t->threads, sizeof *t->workers);
+    for (int i = 0; i < t->threads; i++) {
+        struct worker *w = &t->workers[i];
+        w->ctx = (struct trace_context){
+            .world = options->world, .sink = make_sink(context), .stack = &w->stack,
+            .response = options->response ? options->response : &response_physical};
+    }
+    return t;
+}
+
+bool tracer_run(struct tracer *t, uint32_t tiles, uint32_t first, uint32_t count) {
+    t->first = first;
+    t->count = count;
+    thread_for(t->threads, tiles, trace_tile, t);
+    return !atomic_load(&t->abandoned);
+}
+
+struct tracer_counts tracer_count(const struct tracer *t) {
+    struct tracer_counts sum = {0};
+    for (int i = 0; i < t->threads; i++) {
+        const struct trace_context *c = &t->workers[i].ctx;
+        sum.rays += c->rays;
+        sum.shadow_rays += c->shadow_rays;
+        sum.paths += c->paths;
+        sum.truncated += c->truncated;
+    }
+    return sum;
+}
+
+void tracer_destroy(struct tracer *t) {
+    for (int i = 0; i < t->threads; i++) {
+        struct sink *s = t->workers[i].ctx.sink;
+        s->type->destroy(s);
+    }
+    mem_free(t->workers);
+    mem_free(t);
+}
