@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cook and Torrance's metal: Beckmann's slopes in V-shaped grooves, and the Fresnel reflectance of a
-// complex index per channel, f = kd / pi + ks F D G / (4 cos_o cos_i); formulas, source and the
-// paper's other normalisation in math/cook_torrance.h. Where kd + ks exceeds 1, both are scaled
-// down alike.
+// Cook and Torrance's metal: Beckmann's slopes in V-shaped grooves, and the Fresnel reflectance
+// of a complex index per channel, f = kd / pi + ks F D G / (4 cos_o cos_i); formulas, source and
+// the paper's other normalisation in math/cook_torrance.h. Where kd + ks exceeds 1, both are
+// scaled down alike.
 #include "math/cook_torrance.h"
 
 #include "bsdf/glossy.h"

@@ -10,8 +10,8 @@
 #include "math/direction.h"
 #include "math/warp.h"
 
-// Directions nearer to the horizon than this are taken as that near (89.99999 degrees), and surfaces
-// smoother than this are taken as that smooth: a direction in single precision says no more.
+// Directions nearer to the horizon than this are taken as that near (89.99999 degrees), and
+// surfaces smoother than this as that smooth: a direction in single precision says no more.
 #define GLOSSY_COS_MIN 1e-7
 #define GLOSSY_ROUGHNESS_MIN 1e-4f
 

@@ -3,8 +3,8 @@
 // reflected or transmitted through a thin sheet; formulas and sources in math/kskk.h. With a
 // transmitted lobe the surface is a sheet that is alike from both sides.
 //
-// As published (energy=literal), nothing bounds the sum, and lobes with alpha > 1/2 reflect more than
-// arrives, without bound towards grazing angles. By default f is divided by
+// As published (energy=literal), nothing bounds the sum, and lobes with alpha > 1/2 reflect more
+// than arrives, without bound towards grazing angles. By default f is divided by
 //
 //     max(1, a(wo), a(wi)),    a: the literal model's directional albedo, greatest channel
 //

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Up to three generalised cosine lobes over a diffuse base; formulas and source in math/lafortune.h.
+// Up to three generalised cosine lobes over a diffuse base; formulas and source in
+// math/lafortune.h.
 //
-// A normalised lobe is ks (n + 2) / (2 pi) (C wo . wi)^n with the greatest component of C made 1, so
-// that ks bounds its albedo; where kd and all ks together exceed 1, they are scaled down alike.
+// A normalised lobe is ks (n + 2) / (2 pi) (C wo . wi)^n with the greatest component of C made 1,
+// so that ks bounds its albedo; where kd and all ks together exceed 1, they are scaled down alike.
 // Published coefficients mean ks (C wo . wi)^n with C as it stands: normalised=false.
 #include "math/lafortune.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rough diffuse surface of V-shaped grooves, Oren and Nayar's model in full and in its short form;
-// formulas and source in math/oren_nayar.h. With a reflectance of 1 the full form reflects up to
-// 1.044 of what arrives at grazing angles (roughness 0.4), the short one up to 1.013: no energy claim;
-// eon keeps energy.
+// Rough diffuse surface of V-shaped grooves, Oren and Nayar's model in full and in its short
+// form; formulas and source in math/oren_nayar.h. With a reflectance of 1 the full form reflects
+// up to 1.044 of what arrives at grazing angles (roughness 0.4), the short one up to 1.013: no
+// energy claim; eon keeps energy.
 //
 // alpha is the roughness of a Beckmann surface, sqrt 2 times the slope's standard deviation, as in
 // Mitsuba 0.5's roughdiffuse.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rough diffuse materials share: EON's lobe samples them all (math/eon.h). A model is a function
-// that gives f pi for its closure, which starts with a struct rough_diffuse.
+// What rough diffuse materials share: EON's lobe samples them all (math/eon.h). A model is a
+// function that gives f pi for its closure, which starts with a struct rough_diffuse.
 #pragma once
 
 #include "bsdf/bsdf.h"

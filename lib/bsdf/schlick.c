@@ -3,8 +3,8 @@
 //
 //     f = F (directional + share / pi) + (1 - F) kd / pi,    F = Schlick's, from r0 = ks
 //
-// formulas and source in math/schlick.h. Rough surfaces reflect more than arrives at grazing angles,
-// since G masks less than the slopes of Z call for; so there is no energy claim.
+// formulas and source in math/schlick.h. Rough surfaces reflect more than arrives at grazing
+// angles, since G masks less than the slopes of Z call for; so there is no energy claim.
 #include "math/schlick.h"
 
 #include "bsdf/glossy.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ward's anisotropic highlight over a diffuse base, in its three normalisations; formulas and sources
-// in math/ward.h. Only the balanced one keeps the energy claim. Where kd + ks exceeds 1, both are
-// scaled down alike.
+// Ward's anisotropic highlight over a diffuse base, in its three normalisations; formulas and
+// sources in math/ward.h. Only the balanced one keeps the energy claim. Where kd + ks exceeds 1,
+// both are scaled down alike.
 //
 // Half vectors are drawn as wo sees them in V-shaped grooves: the balanced variant's weight is then
 // at most ks. With g = min(1, 2 cos_h cos_o / cos_d) it is cos_o cos_i / (cos_d^2 g), and cos_o +

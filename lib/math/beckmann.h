@@ -2,7 +2,8 @@
 // The anisotropic Beckmann distribution in double precision (Beckmann and Spizzichino 1963; Ward
 // 1992 for the anisotropic form), without a limit of roughness; math/microfacet.h is the fast one.
 //
-//     D(h) = exp(-e) / (pi mx my cos_h^4),  e = tan^2(theta_h) (cos^2 phi_h / mx^2 + sin^2 phi_h / my^2)
+//     D(h) = exp(-e) / (pi mx my cos_h^4)
+//     e = tan^2(theta_h) (cos^2 phi_h / mx^2 + sin^2 phi_h / my^2)
 //
 // The integral of D cos_h over the hemisphere is 1.
 #pragma once

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blinn's form of the Phong highlight (Blinn 1977, Models of Light Reflection for Computer
-// Synthesized Pictures) as a distribution of microfacets, D = (n + 2) / (2 pi) cos^n(theta_h), which
-// is normalised: the integral of D cos_h is 1. With the grooves of Torrance and Sparrow
+// Synthesized Pictures) as a distribution of microfacets, D = (n + 2) / (2 pi) cos^n(theta_h),
+// which is normalised: the integral of D cos_h is 1. With the grooves of Torrance and Sparrow
 //
 //     f = D G / (4 cos_o cos_i)     (times the Fresnel reflectance)
 #pragma once

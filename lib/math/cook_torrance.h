@@ -4,8 +4,8 @@
 //
 //     f = F D G / (4 cos_o cos_i)
 //
-// with D normalised over projected area. The paper has D without 1/pi and pi in place of 4: its f is
-// 4 times this one, and reflects up to 4 times what arrives.
+// with D normalised over projected area. The paper has D without 1/pi and pi in place of 4: its f
+// is 4 times this one, and reflects up to 4 times what arrives.
 #pragma once
 
 #include "math/beckmann.h"

@@ -2,10 +2,10 @@
 // Geometry of reflection at the half vector h = (wi + wo) / |wi + wo|, and the sampling that every
 // model built on it can share.
 //
-// A half vector is drawn with a density p_h(h) that is symmetric about n; of h and its mirror image
-// h' = (-h_x, -h_y, h_z), one is kept in proportion to what wo sees of each (Heitz 2014,
-// Understanding the Masking-Shadowing Function, section 2.5: for p_h = D cos_h these are the visible
-// normals of V-cavities). Since wo.h + wo.h' = 2 cos_h cos_o, the density of wi becomes
+// A half vector is drawn with a density p_h(h) that is symmetric about n; of h and its mirror
+// image h' = (-h_x, -h_y, h_z), one is kept in proportion to what wo sees of each (Heitz 2014,
+// Understanding the Masking-Shadowing Function, section 2.5: for p_h = D cos_h these are the
+// visible normals of V-cavities). Since wo.h + wo.h' = 2 cos_h cos_o, the density of wi becomes
 //
 //     pdf_sa = p_h(h) / (4 cos_d) min(2, cos_d / (cos_h cos_o))
 //
@@ -25,15 +25,13 @@ struct half_vector {
 static inline bool half_vector_make(struct direction wo, struct direction wi,
                                     struct half_vector *v) {
     const double x = wi.x + wo.x, y = wi.y + wo.y, z = wi.z + wo.z;
-    const double length = sqrt(x * x + y * y + z * z);
-    if (!(length > 0))
-        return false;
-    v->h = (struct direction){x / length, y / length, z / length};
+    const double length = sqrt(x * x + y * y + z * z), inv = length > 0 ? 1 / length : 0;
+    v->h = (struct direction){x * inv, y * inv, z * inv};
     v->cos_o = wo.z;
     v->cos_i = wi.z;
     v->cos_h = v->h.z;
     v->cos_d = 0.5 * length;
-    return true;
+    return length > 0;
 }
 
 // Density of wi, given the density of h.

@@ -42,7 +42,8 @@ double kskk_albedo(const struct kskk *k, double cos_o, double phi_o) {
     gauss_legendre(RADII, x, w);
     gauss_legendre(AZIMUTHS, y, v);
     const double sine = sqrt(fmax((1 - cos_o) * (1 + cos_o), 0));
-    const double along = sine * cos(phi_o) * k->slopes.mx, across = sine * sin(phi_o) * k->slopes.my;
+    const double along = sine * cos(phi_o) * k->slopes.mx;
+    const double across = sine * sin(phi_o) * k->slopes.my;
     // a is greatest in the middle and vanishes a quarter turn off, where nodes gather
     const double middle = atan2(across, along);
     for (int quarter = 0; quarter < 4; quarter++) {

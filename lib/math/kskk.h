@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The anisotropic Beckmann model with a free exponent in place of shadowing and masking (Kurt,
-// Szirmay-Kalos and Krivanek 2010, An Anisotropic BRDF Model for Fitting and Monte Carlo Rendering),
-// and its lobe for thin sheets (Muehlbacher 2012, Real-time Rendering of Measured Materials, eq.
-// 3.5), where wt' is the direction below, mirrored at the surface:
+// Szirmay-Kalos and Krivanek 2010, An Anisotropic BRDF Model for Fitting and Monte Carlo
+// Rendering), and its lobe for thin sheets (Muehlbacher 2012, Real-time Rendering of Measured
+// Materials, eq. 3.5), where wt' is the direction below, mirrored at the surface:
 //
 //     f_r(wo, wi) = F(cos_d) D(h) / (4 cos_d (cos_o cos_i)^alpha)
 //     f_t(wo, wt) = (1 - F(cos_d)) D(h) / (4 cos_d (cos_o cos_t)^alpha),  h of wo and wt'
@@ -40,6 +40,7 @@ static inline double kskk_weight(const struct kskk *k, const struct half_vector 
            (v->cos_h * pow(v->cos_o * v->cos_i, k->alpha));
 }
 
-// What the lobe reflects (or transmits) of all that arrives, seen from a direction with that cosine
-// and azimuth: the integral of f cos_i. Without bound for alpha > 1/2 towards cos_o = 0. To 1e-5 of itself.
+// What the lobe reflects (or transmits) of all that arrives, seen from a direction with that
+// cosine and azimuth: the integral of f cos_i. Without bound for alpha > 1/2 towards cos_o = 0.
+// To 1e-5 of itself.
 double kskk_albedo(const struct kskk *k, double cos_o, double phi_o);

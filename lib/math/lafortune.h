@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One generalised cosine lobe (Lafortune, Foo, Torrance and Greenberg 1997, Non-Linear Approximation
-// of Reflectance Functions):
+// One generalised cosine lobe (Lafortune, Foo, Torrance and Greenberg 1997, Non-Linear
+// Approximation of Reflectance Functions):
 //
 //     f = (C_x o_x i_x + C_y o_y i_y + C_z o_z i_z)^n
 //
-// Phong's lobe is C = (-1, -1, 1). With |C| <= 1 in every component, (n + 2) / (2 pi) f has an albedo
-// of at most 1: the sum is |C wo| times a cosine, and Phong's albedo bounds the rest.
+// Phong's lobe is C = (-1, -1, 1). With |C| <= 1 in every component, (n + 2) / (2 pi) f has an
+// albedo of at most 1: the sum is |C wo| times a cosine, and Phong's albedo bounds the rest.
 #pragma once
 
 #include "math/phong.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Oren and Nayar 1994, Generalization of Lambert's Reflectance Model: V-shaped grooves of Lambertian
-// facets, sigma the standard deviation of their slope angle in radians. Functions return f times pi
-// without one factor of the reflectance rho.
+// Oren and Nayar 1994, Generalization of Lambert's Reflectance Model: V-shaped grooves of
+// Lambertian facets, sigma the standard deviation of their slope angle in radians. Functions
+// return f times pi without one factor of the reflectance rho.
 #pragma once
 
 #include "math/direction.h"
@@ -31,8 +31,8 @@ static inline double oren_nayar_qualitative(const struct oren_nayar_angles *a, d
            0.45 * s2 / (s2 + 0.09) * fmax(a->cos_phi, 0) * a->sin_alpha * a->tan_beta;
 }
 
-// The full model, eq. 27 and 28: light reflected once. Where sigma is great, the published sum falls
-// below 0 far from the light; it ends at 0 here.
+// The full model, eq. 27 and 28: light reflected once. Where sigma is great, the published sum
+// falls below 0 far from the light; it ends at 0 here.
 static inline double oren_nayar_once(const struct oren_nayar_angles *a, double sigma) {
     const double s2 = sigma * sigma, b = 2 * a->beta / M_PI;
     const double ab = 4 * a->alpha * a->beta / (M_PI * M_PI);

@@ -73,8 +73,8 @@ static inline double schlick_pdf_h(struct direction h, double r, double p,
 }
 
 // A half vector; u, v in [0, 1).
-static inline struct direction schlick_half_sample(double r, const struct schlick_azimuth *z, double u,
-                                              double v) {
+static inline struct direction schlick_half_sample(double r, const struct schlick_azimuth *z,
+                                                   double u, double v) {
     const double slope = sqrt(r * u / (1 - u)), phi = schlick_azimuth_sample(z, v);
     return direction_of(slope * cos(phi), slope * sin(phi), 1);
 }
