@@ -15,9 +15,12 @@ static double norm(double x, double y, double z) {
 }
 
 struct angles angles_make(const double wo[3], const double wi[3]) {
-    struct angles a = {.cos_i = wi[2], .cos_o = wo[2], .wi = wi, .wo = wo};
-    for (int i = 0; i < 3; i++)
+    struct angles a = {.cos_i = wi[2], .cos_o = wo[2]};
+    for (int i = 0; i < 3; i++) {
+        a.wi[i] = wi[i];
+        a.wo[i] = wo[i];
         a.h[i] = wi[i] + wo[i];
+    }
     const double x2 = a.h[0] * a.h[0], y2 = a.h[1] * a.h[1], r2 = x2 + y2;
     double l = sqrt(r2 + a.h[2] * a.h[2]);
     l = l > LEAST ? l : LEAST;

@@ -40,10 +40,9 @@ struct angles {
     double cos_h, sin_h;
     double h[3];               // wi + wo, not normalised
     double cos2_phi, sin2_phi; // of h's azimuth; 1 and 0 where h is the normal
-    const double *wi, *wo;
+    double wi[3], wo[3];
 };
 
-// wi and wo must live as long as the result.
 struct angles angles_make(const double wo[3], const double wi[3]);
 double gamma_at(const struct gamma *g, const struct angles *a);
 // -log(cos theta_h), without cancellation

@@ -27,6 +27,7 @@ struct bsdf_case {
 static const struct bsdf_case bsdf_rows[] = {
 #include "property/bsdf_cases_classic.inc"
 #include "property/bsdf_cases_standard.inc"
+#include "property/bsdf_cases_editable.inc"
 #include "property/bsdf_cases_principled.inc"
 };
 
