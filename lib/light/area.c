@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A shape that emits the same radiance in all directions on the side of its normal.
-#include "light/area_shape.h"
+#include "light/area_picture.h"
 
 #include <float.h>
+
+#include "light/solid_angle.h"
 
 struct area {
     struct texture_ref radiance;
@@ -10,6 +12,7 @@ struct area {
     bool is_mesh;
     struct area_mesh mesh;
     struct area_quadric quadric;
+    struct area_picture picture; // of a textured rectangle
 };
 
 static const struct param params[] = {
@@ -29,14 +32,57 @@ static bool prepare(struct object *self, const struct light_scene *scene, struct
     a->is_mesh = scene->shape->kind == SHAPE_MESH;
     const bool ok = a->is_mesh ? area_mesh_init(&a->mesh, scene->shape)
                                : area_quadric_init(&a->quadric, scene->shape);
+    if (ok && a->is_mesh)
+        area_picture_init(&a->picture, &a->radiance, &a->mesh);
     if (!ok)
         log_error_at(self->at, "area: the shape '%s' has no area, expected one that can emit",
                      scene->shape->name);
     return ok;
 }
 
+// ---- textured rectangles
+
+// Share of the samples taken by the picture: all, but half where the light is so near that
+// distance and foreshortening vary as much.
+static float picture_share(const struct area *a, vec3 p) {
+    return solid_angle_pays(&a->mesh, p) ? 0.5f : 1;
+}
+
+// The density of both ways together.
+static float picture_pdf_sa(const struct area *a, vec3 p, const struct light_hit *hit) {
+    const float share = picture_share(a, p);
+    const float density = area_picture_density(&a->picture, area_mesh_xy(&a->mesh, &hit->at));
+    const float pdf = area_to_solid_angle(density * a->mesh.inv_area, hit->distance,
+                                          fabsf(dot(hit->ng, hit->wi)));
+    return share < 1 ? share * pdf + (1 - share) * area_mesh_pdf_sa(&a->mesh, p, hit) : pdf;
+}
+
+static bool picture_sample(const struct area *a, vec3 p, struct vec2 u, struct light_sample *s) {
+    const float share = picture_share(a, p);
+    struct texture_point at = {0};
+    if (u.x < share) {
+        float density;
+        u.x = minf(u.x / share, 0x1.fffffep-1f);
+        *s = (struct light_sample){0};
+        area_mesh_place_at(&a->mesh, area_picture_sample(&a->picture, u, &density), s, &at);
+        if (!area_finish_sample(p, a->mesh.inv_area, s))
+            return false;
+    } else {
+        u.x = minf((u.x - share) / (1 - share), 0x1.fffffep-1f);
+        if (!area_mesh_sample(&a->mesh, p, u, s, &at))
+            return false;
+    }
+    const struct light_hit hit = {s->wi, s->distance, s->n, at};
+    s->pdf_sa = picture_pdf_sa(a, p, &hit);
+    s->delta = false;
+    s->emission = texture_eval(&a->radiance, &at);
+    return s->pdf_sa > 0;
+}
+
 static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample *s) {
     const struct area *a = data;
+    if (a->picture.size)
+        return picture_sample(a, p, u, s);
     struct texture_point at = {0}, *want = a->radiance.texture ? &at : NULL;
     const bool ok = a->is_mesh ? area_mesh_sample(&a->mesh, p, u, s, want)
                                : area_quadric_sample(&a->quadric, p, u, s, want);
@@ -67,6 +113,8 @@ static spectrum emission(const void *data, const struct light_hit *hit) {
 
 static float pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
     const struct area *a = data;
+    if (a->picture.size)
+        return picture_pdf_sa(a, p, hit);
     return a->is_mesh ? area_mesh_pdf_sa(&a->mesh, p, hit)
                       : area_quadric_pdf_sa(&a->quadric, p, hit);
 }
@@ -129,6 +177,7 @@ static void bounds(const void *data, uint32_t part, struct light_bounds *b) {
 
 static void finish(void *data) {
     struct area *a = data;
+    area_picture_finish(&a->picture);
     if (a->is_mesh)
         area_mesh_finish(&a->mesh);
 }

@@ -253,6 +253,19 @@ bool area_mesh_faces(const struct area_mesh *a, const struct light_hit *hit) {
     return front != opposes_normals(a->mesh, hit->at.triangle, n);
 }
 
+void area_mesh_place_at(const struct area_mesh *a, struct vec2 xy, struct light_sample *s,
+                        struct texture_point *at) {
+    place_on_rectangle(a, xy, s, at);
+}
+
+struct vec2 area_mesh_xy(const struct area_mesh *a, const struct texture_point *at) {
+    const float b[3] = {1 - at->barycentric.x - at->barycentric.y, at->barycentric.x,
+                        at->barycentric.y};
+    const uint32_t k = a->first[at->triangle];
+    const float x = b[(k + 1) % 3], y = b[(k + 2) % 3];
+    return at->triangle ? (struct vec2){1 - x, 1 - y} : (struct vec2){x, y};
+}
+
 // ---- single triangles, for the light tree
 
 uint32_t area_mesh_parts(const struct area_mesh *a) {

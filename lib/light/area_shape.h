@@ -35,6 +35,12 @@ bool area_mesh_sample(const struct area_mesh *a, vec3 p, struct vec2 u, struct l
 wide_mask area_rectangle_sample_wide(const struct area_mesh *a, const struct wide3 *p,
                                      const wide u[2], struct light_samples *s);
 float area_mesh_pdf_sa(const struct area_mesh *a, vec3 p, const struct light_hit *hit);
+// POLYGON_RECTANGLE: the point at xy in units of the edges (fills p, p_error, n), and back from a
+// place on its triangles.
+void area_mesh_place_at(const struct area_mesh *a, struct vec2 xy, struct light_sample *s,
+                        struct texture_point *at);
+struct vec2 area_mesh_xy(const struct area_mesh *a, const struct texture_point *at);
+
 // Single triangles of a POLYGON_MESH, as above; a hit's is hit->at.triangle.
 uint32_t area_mesh_parts(const struct area_mesh *a);
 bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle, vec3 p, struct vec2 u,

@@ -258,6 +258,23 @@ static void add_triangles(void) {
     add_case("mesh with degenerate triangles", CHART_TRIANGLES, light, m, v3(0.3f, 0.2f, 1.5f));
 }
 
+// A picture that is mostly dark, on a rectangle: near, far, and seen from behind.
+static void add_textured(void) {
+    struct shape *s = new_rectangle(false);
+    struct object *texture = make_texture(&arena, "checkerboard", "color0=0.05 color1=3", NULL);
+    const struct object *const children[] = {texture, NULL};
+    struct object *light = make_object(&arena, &lights, "area", "", children);
+    const struct light_scene scene = {.radius = 1, .shape = s};
+    CHECK(light_type_of(light)->prepare(light, &scene, &arena));
+    const vec3 from[4] = {v3(0.3f, 0.2f, 0.4f), v3(-0.9f, 0.5f, 0.02f), v3(3, 1, 5), v3(0, 0, 300)};
+    for (int i = 0; i < 4; i++) {
+        struct light_case *c = add_case("textured rectangle", CHART_TRIANGLES, light, s, from[i]);
+        c->kx = c->ky = 16;
+        c->midpoints = 96;
+    }
+    add_case("textured rectangle", CHART_TRIANGLES, light, s, v3(0, 0, -1))->may_be_empty = true;
+}
+
 static void add_cube(void) {
     struct shape *s = arena_alloc(&arena, sizeof *s);
     s->name = "cube";
@@ -548,6 +565,7 @@ static int by_value(const void *a, const void *b) {
 int main(void) {
     add_rectangles();
     add_triangles();
+    add_textured();
     add_cube();
     add_quadrics();
     add_skies();

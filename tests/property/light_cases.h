@@ -132,6 +132,18 @@ static inline void sub_cross(struct dpoint a0, struct dpoint a1, struct dpoint b
     c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+static inline struct texture_point triangle_place(const struct mesh *m, uint32_t triangle,
+                                                  float b1, float b2) {
+    struct texture_point at = {{b1, b2}, m, triangle, {b1, b2}};
+    const uint32_t *i = m->indices[triangle];
+    if (m->uvs) {
+        const float b0 = 1 - b1 - b2;
+        at.uv.x = b0 * m->uvs[i[0]][0] + b1 * m->uvs[i[1]][0] + b2 * m->uvs[i[2]][0];
+        at.uv.y = b0 * m->uvs[i[0]][1] + b1 * m->uvs[i[1]][1] + b2 * m->uvs[i[2]][1];
+    }
+    return at;
+}
+
 // The hit at a place of a chart, and solid angle per unit of the chart. false: seen from behind.
 static inline bool surface_hit(const struct light_case *c, int chart, double s, double t,
                                struct light_hit *hit, double *solid_angle) {
@@ -165,7 +177,8 @@ static inline bool surface_hit(const struct light_case *c, int chart, double s, 
                                                  (float)(d[2] / sqrt(d2)))),
                               .distance = (float)sqrt(d2), .ng = n};
     if (c->kind == CHART_TRIANGLES)
-        hit->at = (struct texture_point){.mesh = &c->shape->mesh, .triangle = (uint32_t)chart};
+        hit->at = triangle_place(&c->shape->mesh, (uint32_t)chart, (float)(sqrt(s) * (1 - t)),
+                                 (float)(sqrt(s) * t));
     return dot(hit->wi, n) < 0;
 }
 
