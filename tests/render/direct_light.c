@@ -9,11 +9,11 @@ static const double FALSE_ALARMS = 1e-3;
 static const double ALBEDO = 0.8;
 
 // How light is looked for. The floor itself reflects nothing onto itself, so all see the same.
-struct method {
+struct way {
     const char *name, *integrator;
 };
 
-static const struct method methods[] = {
+static const struct way methods[] = {
     {"path", "<integrator type='path'/>"},
     {"direct", "<integrator type='direct'/>"},
     {"lights only", "<integrator type='direct'><integer name='bsdf_samples' value='0'/></integrator>"},
