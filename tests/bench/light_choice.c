@@ -82,6 +82,22 @@ static double time_densities(const struct world *w, const struct places *p,
     return n > 0 && sum >= 0 ? seconds * 1e9 / (double)n : 0;
 }
 
+// Nodes of the tree that a choice looks at, in the mean.
+static double nodes_visited(const struct light_tree *t, const struct places *p) {
+    struct rng rng = {3};
+    size_t nodes = 0, choices = 0;
+    for (int i = 0; i < p->count; i++) {
+        uint32_t item;
+        float pmf;
+        if (!light_tree_choose(t, &p->at[i], (double)rng_float(&rng), &item, &pmf))
+            continue;
+        choices++;
+        for (uint32_t slot = t->slots[item]; slot != LIGHT_TREE_LEAF; slot = t->nodes[slot / 4].parent)
+            nodes++;
+    }
+    return choices ? (double)nodes / (double)choices : 0;
+}
+
 int main(int argc, char **argv) {
     if (argc != 2) {
         fprintf(stderr, "usage: light_choice SCENE\n");
@@ -102,9 +118,12 @@ int main(int argc, char **argv) {
         const double ready = cpu_seconds() - start;
         const double sample = time_samples(job.world, &p, hits, found);
         const double density = time_densities(job.world, &p, hits, found);
-        printf("  %-8s %6.0f ns a sample, %6.0f ns a density, ready in %.3f s, %zu bytes\n",
+        printf("  %-8s %6.0f ns a sample, %6.0f ns a density, ready in %.3f s, %zu bytes",
                light_choice_modes[mode], sample, density, ready,
                light_choice_bytes(&job.world->choice));
+        if (job.world->choice.has_tree)
+            printf(", %.1f nodes", nodes_visited(&job.world->choice.tree, &p));
+        printf("\n");
     }
     mem_free(p.at);
     mem_free(hits);

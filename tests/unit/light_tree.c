@@ -235,6 +235,21 @@ static void check_extremes(void) {
     light_tree_finish(&t);
 }
 
+// Nodes on the way to a chosen light, in the mean, at places in its middle.
+static double nodes_visited(const struct light_tree *t, struct rng *r) {
+    enum { CHOICES = 2000 };
+    size_t nodes = 0;
+    for (int i = 0; i < CHOICES; i++) {
+        const struct light_place at = {0.5f * v3(number(r), number(r), number(r)), direction(r)};
+        uint32_t item = 0;
+        float pmf;
+        CHECK(light_tree_choose(t, &at, (double)rng_float(r), &item, &pmf));
+        for (uint32_t s = t->slots[item]; s != LIGHT_TREE_LEAF; s = t->nodes[s / 4].parent)
+            nodes++;
+    }
+    return (double)nodes / CHOICES;
+}
+
 static void check_size(void) {
     enum { MANY = 1000000 };
     struct light_bounds *many = mem_array(MANY, sizeof *many);
@@ -242,14 +257,25 @@ static void check_size(void) {
     struct light_tree t;
     for (int i = 0; i < MANY; i++) {
         const vec3 d = direction(&r);
-        many[i] = (struct light_bounds){.min = d, .max = d * 1.001f, .axis = d, .cos_o = 1,
+        many[i] = (struct light_bounds){.min = d, .max = d * 1.001f, .axis = -d, .cos_o = 1,
                                         .intensity = 1e-6f};
+    }
+    // log n: no more than 1.4 times the depth of a full tree of four children
+    for (uint32_t n = 100; n < MANY; n *= 100) {
+        light_tree_init(&t, many, n);
+        const double nodes = nodes_visited(&t, &r);
+        printf("%u lights: %.1f nodes a choice\n", n, nodes);
+        CHECK(nodes < 1.4 * log(n) / log(4));
+        light_tree_finish(&t);
     }
     const double start = time_seconds();
     light_tree_init(&t, many, MANY);
     const double bytes = (double)light_tree_bytes(&t) / MANY;
     printf("1e6 lights: built in %.2f s, %.1f bytes each\n", time_seconds() - start, bytes);
     CHECK(bytes < 120);
+    const double nodes = nodes_visited(&t, &r);
+    printf("1e6 lights: %.1f nodes a choice\n", nodes);
+    CHECK(nodes < 1.4 * log(MANY) / log(4));
     light_tree_finish(&t);
     mem_free(many);
 }
