@@ -283,19 +283,31 @@ static bool run_child(struct decoder_input *in, image_decoder decode, struct ima
     return good;
 }
 
-bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
-                           struct image *im) {
-    struct decoder_input in = {.path = path};
+static bool find_file(struct decoder_input *in) {
     struct stat st;
-    if (stat(path, &st) != 0 || access(path, R_OK) != 0) {
-        log_error("%s: cannot be read: %s", path, strerror(errno));
+    if (stat(in->path, &st) != 0 || access(in->path, R_OK) != 0) {
+        log_error("%s: cannot be read: %s", in->path, strerror(errno));
         return false;
     }
     if (!S_ISREG(st.st_mode)) {
-        log_error("%s: is not a regular file", path);
+        log_error("%s: is not a regular file", in->path);
         return false;
     }
-    in.file_size = (uint64_t)st.st_size;
+    in->file_size = (uint64_t)st.st_size;
+    return true;
+}
+
+bool image_decode_part_in_child(const char *path, const char *part, image_decoder decode,
+                                struct image *im) {
+    struct decoder_input in = {.path = path, .part = part};
+    return find_file(&in) && run_child(&in, decode, im);
+}
+
+bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
+                           struct image *im) {
+    struct decoder_input in = {.path = path};
+    if (!find_file(&in))
+        return false;
     if (run_child(&in, decode, im))
         return true;
     if (!in.unsupported)

@@ -15,6 +15,7 @@
 
 struct decoder_input {
     const char *path;
+    const char *part; // of a file with several, by name; NULL: the first
     uint64_t file_size;
     char message[512]; // why it failed, without the file's name
     bool unsupported;  // sound as far as it was read, but this decoder lacks a part it needs
@@ -25,6 +26,9 @@ typedef bool (*image_decoder)(struct decoder_input *in, struct image *im);
 
 bool exr_decode(struct decoder_input *in, struct image *im);
 bool oiio_decode(struct decoder_input *in, struct image *im);
+// Voxels as a picture of height times depth lines; attributes: depth, origin (index of the first
+// voxel) and indexToWorld (16 numbers of a matrix for columns, row by row).
+bool oiio_decode_voxels(struct decoder_input *in, struct image *im);
 
 // Most bytes of pixels that a file of this size may hold: 768 MiB + 64 times its size.
 uint64_t decoder_pixel_limit(uint64_t file_size);
@@ -38,3 +42,6 @@ bool decoder_fail(struct decoder_input *in, const char *format, ...)
 // file unsupported. false after one error message that names the file.
 bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
                            struct image *im);
+// The same for a part of a file.
+bool image_decode_part_in_child(const char *path, const char *part, image_decoder decode,
+                                struct image *im);

@@ -12,6 +12,7 @@
 static struct {
     pthread_once_t once;
     oiio_module_decode_function *decode;
+    oiio_module_decode_function *decode_voxels;
     oiio_module_write_png_function *write_png;
     char error[512];
 } module = {.once = PTHREAD_ONCE_INIT}; // loaded once, constant from then on
@@ -38,9 +39,11 @@ static void load(void) {
     void *handle = open_module();
     if (handle) {
         module.decode = (oiio_module_decode_function *)dlsym(handle, "oiio_module_decode");
+        module.decode_voxels =
+            (oiio_module_decode_function *)dlsym(handle, "oiio_module_decode_voxels");
         module.write_png = (oiio_module_write_png_function *)dlsym(handle, "oiio_module_write_png");
     }
-    if (module.decode && module.write_png)
+    if (module.decode && module.decode_voxels && module.write_png)
         return;
     const char *why = dlerror();
     if (!module.error[0])
@@ -49,7 +52,7 @@ static void load(void) {
 
 bool oiio_load(void) {
     pthread_once(&module.once, load);
-    if (module.decode && module.write_png)
+    if (module.decode && module.decode_voxels && module.write_png)
         return true;
     log_error("pictures other than EXR cannot be read or written: %s", module.error);
     return false;
@@ -57,6 +60,10 @@ bool oiio_load(void) {
 
 bool oiio_decode(struct decoder_input *in, struct image *im) {
     return module.decode(&host, in, im);
+}
+
+bool oiio_decode_voxels(struct decoder_input *in, struct image *im) {
+    return module.decode_voxels(&host, in, im);
 }
 
 bool oiio_write_png(const char *path, const unsigned char *bytes, int width, int height,

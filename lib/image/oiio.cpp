@@ -12,6 +12,7 @@ extern "C" {
 }
 
 extern "C" oiio_module_decode_function oiio_module_decode;
+extern "C" oiio_module_decode_function oiio_module_decode_voxels;
 extern "C" oiio_module_write_png_function oiio_module_write_png;
 
 static bool fail(struct decoder_input *in, const std::string &why) {
@@ -56,6 +57,60 @@ extern "C" bool oiio_module_decode(const struct oiio_host *host, struct decoder_
                                    struct image *im) {
     try {
         return decode(host, in, im);
+    } catch (const std::exception &e) {
+        return fail(in, e.what());
+    }
+}
+
+// Goes to the part of that name, else stays at the first.
+static bool find_part(OIIO::ImageInput &input, const char *name) {
+    for (int i = 0; name && input.seek_subimage(i, 0); i++)
+        if (input.spec().get_string_attribute("oiio:subimagename") == name)
+            return true;
+    return !name;
+}
+
+// OpenImageIO's matrices are for rows of coordinates.
+static std::string transposed(const OIIO::ImageSpec &spec, const char *name) {
+    float m[16];
+    std::string text;
+    if (!spec.getattribute(name, OIIO::TypeDesc::TypeMatrix, m))
+        return text;
+    for (int i = 0; i < 16; i++)
+        text += (i ? " " : "") + std::to_string((double)m[i % 4 * 4 + i / 4]);
+    return text;
+}
+
+static bool decode_voxels(const struct oiio_host *host, struct decoder_input *in,
+                          struct image *im) {
+    OIIO::attribute("threads", 1);
+    auto input = OIIO::ImageInput::open(in->path);
+    if (!input)
+        return fail(in, OIIO::geterror());
+    if (!find_part(*input, in->part))
+        return fail(in, std::string("has no grid \"") + in->part + "\"");
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.get_string_attribute("openvdb:class") == "level set")
+        return fail(in, "is a level set, whose values are distances; expected a fog volume");
+    if (spec.depth < 1 || spec.depth > 1 << 16 || spec.height < 1 || spec.height > 1 << 16)
+        return fail(in, "has an impossible size");
+    if (!host->init_image(in, im, spec.width, (int64_t)spec.height * spec.depth, spec.nchannels))
+        return false;
+    const int part = input->current_subimage();
+    if (!input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, im->pixels))
+        return fail(in, input->geterror());
+    const std::string origin = std::to_string(spec.x) + " " + std::to_string(spec.y) + " " +
+                               std::to_string(spec.z);
+    host->set_text(im, "depth", std::to_string(spec.depth).c_str());
+    host->set_text(im, "origin", origin.c_str());
+    host->set_text(im, "indexToWorld", transposed(spec, "openvdb:indextoworld").c_str());
+    return true;
+}
+
+extern "C" bool oiio_module_decode_voxels(const struct oiio_host *host, struct decoder_input *in,
+                                          struct image *im) {
+    try {
+        return decode_voxels(host, in, im);
     } catch (const std::exception &e) {
         return fail(in, e.what());
     }

@@ -63,11 +63,12 @@ bool grid_read(const char *path, const char *name, struct grid *g) {
     memset(g, 0, sizeof *g);
     file_extension(path, extension, sizeof extension);
     bool good = false;
-    (void)name;
     if (strcmp(extension, "vol") == 0)
         good = grid_read_vol(path, g);
+    else if (strcmp(extension, "vdb") == 0)
+        good = grid_read_vdb(path, name, g);
     else
-        log_error("%s: is not a volume format that is read (vol)", path);
+        log_error("%s: is not a volume format that is read (vol, vdb)", path);
     if (good && check_values(path, g))
         return true;
     grid_finish(g);

@@ -14,6 +14,7 @@ struct grid {
     // From the unit cube that the voxels fill to the space the file places them in; the identity
     // where it places them nowhere.
     struct transform to_file;
+    bool placed;     // the format's grids stand in the world (OpenVDB), whatever the scene says
 };
 
 // By the file's extension: .vol (Mitsuba's, version 3) or .vdb (OpenVDB). name: of the grid in a
@@ -32,3 +33,4 @@ enum { GRID_MOST_VOXELS = 1 << 30, GRID_MOST_SIDE = 1 << 16 };
 // Takes size and channels from the grid and makes room for its values. false after an error message.
 bool grid_init(struct grid *g, const char *path);
 bool grid_read_vol(const char *path, struct grid *g);
+bool grid_read_vdb(const char *path, const char *name, struct grid *g);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A volume from a file of voxels. They fill the unit cube before to_world, or the box that the file
-// gives; values stand in the middles of voxels (as Mitsuba 3 has it).
+// A volume from a file of voxels. They fill the unit cube before to_world, or stand where the file
+// says; values stand in the middles of voxels (as Mitsuba 3 has it).
 #include "volume/bounds.h"
 #include "volume/grid.h"
 #include "volume/volume.h"
@@ -26,7 +26,7 @@ static const char *const wrap_names[] = {"clamp", "repeat", "mirror", NULL};
 #define FIELD(name) offsetof(struct gridvolume, name)
 
 static const struct param params[] = {
-    {"filename", PARAM_FILE, FIELD(filename), .help = "a .vol (version 3)"},
+    {"filename", PARAM_FILE, FIELD(filename), .help = "a .vol (version 3) or .vdb (OpenVDB)"},
     {"grid", PARAM_STRING, FIELD(grid_name), .optional = true,
      .help = "name of the grid, in a file with several"},
     {"filter_type", PARAM_CHOICE, FIELD(filter), .def = "trilinear", .choices = filter_names,
@@ -34,7 +34,7 @@ static const struct param params[] = {
     {"wrap_mode", PARAM_CHOICE, FIELD(wrap), .def = "clamp", .choices = wrap_names,
      .help = "beyond the grid, where this is no density"},
     {"use_grid_bbox", PARAM_BOOL, FIELD(use_grid_bbox), .def = "false",
-     .help = "fill the box that the file gives (true in files before version 2)"},
+     .help = "stand where the file says: always so for .vdb, and in scenes before version 2"},
     {"to_world", PARAM_TRANSFORM, FIELD(to_world), .def = "", .help = "volume to world"},
     {"raw", PARAM_IGNORED}, {"accel", PARAM_IGNORED}, {"send_data", PARAM_IGNORED},
     PARAM_END,
@@ -142,7 +142,7 @@ static void pieces(const void *data, vec3 o, vec3 d, float t0, float t1,
 
 static bool place(struct gridvolume *v, const double origin[3], struct where at) {
     struct transform inverse, unit = v->to_world;
-    if (v->use_grid_bbox)
+    if (v->use_grid_bbox || v->grid.placed)
         unit = transform_multiply(&v->to_world, &v->grid.to_file);
     const struct transform move = transform_translate(-origin[0], -origin[1], -origin[2]);
     unit = transform_multiply(&move, &unit);
