@@ -11,9 +11,11 @@
 //   differ by what the roundings can make.
 // - Three scenes name no format for the film, which then is half precision: all XYZ values of their
 //   references are halves, rounded towards zero, hence too dark by 0.034 % on average (half a last
-//   place, which is 2^-11 to 2^-10 of the value). For mesh_attributes Mitsuba 3.9.1 at 32 000 samples,
-//   summed up at once or in 64 parts, is above the reference by 0.026 %, 6 standard errors, as is ours;
-//   rounded towards zero, ours is below it by 0.0001 % +- 0.0044 %.
+//   place, which is 2^-11 to 2^-10 of the value). The sunlit floor of directional has the radiance
+//   1 / pi = 0.318310; the reference has 0.318115 in 146 pixels, the half below it, where the nearest
+//   is 0.318359. For mesh_attributes Mitsuba 3.9.1 at 32 000 samples, summed up at once or in 64
+//   parts, is above the reference by 0.026 %, 6 standard errors, as is ours; rounded towards zero,
+//   ours is below it by 0.0001 % +- 0.0044 %.
 //
 // Needs the shared data; takes the name of a case, to run that one alone. Left out: scenes with
 // the principled material.
