@@ -10,12 +10,12 @@
 //                        sin phi_h) has the density exp(-(x^2 + y^2) / 2) of solid angle, so the
 //                        two axes are independent
 //     slope              half vectors, x = gamma of either axis
-//     theta_r, theta_d   around the mirror direction or wo, x = sin^2 of half the angle: p(x) / 4 pi
+//     theta_r, theta_d   around the mirror direction or wo, x = sin^2(angle / 2):  p(x) / 4 pi
 //     theta_i            around the normal, x = sin^2(theta_i):   p(x) cos_i / pi
 //
-// Half vectors are symmetric about the normal and reflect as in math/half_vector.h. Some share of all
-// samples is cosine-distributed: what a curve does not know (the quotient, the other curve) keeps a
-// density.
+// Half vectors are symmetric about the normal and reflect as in math/half_vector.h. Some share of
+// all samples is cosine-distributed: what a curve does not know (the quotient, the other curve)
+// keeps a density.
 #pragma once
 
 #include "curve/form.h"

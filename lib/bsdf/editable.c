@@ -36,6 +36,7 @@ static spectrum curve_value(const struct editable *self, uint32_t curve,
 
 static void find_place(const struct editable *self, const struct form_slot *slot,
                        const struct angles *a, struct curve_place *p) {
+    p->count = 0;
     if (slot->gamma.kind == GAMMA_NONE)
         return;
     const struct basis *b = &self->form.curve[slot->curve].f[0].table->basis;

@@ -13,14 +13,14 @@
 
 // The functions of a curve's basis that are not zero at its gamma.
 struct curve_place {
-    uint32_t count; // 0: gamma is beyond the curve, which is 0 there
+    uint32_t count; // 0: there is no curve, or gamma is beyond it, where it is 0
     uint32_t index[2];
     double value[2];
 };
 
 struct editable_value {
     spectrum factor; // f_q times textures times rho_q cos_i: all but the curves
-    struct curve_place place[SLOTS]; // of slots with a curve
+    struct curve_place place[SLOTS];
 };
 
 // NULL: the material is of another type. All curves of the form are tables.
@@ -28,7 +28,7 @@ const struct form *editable_form(const struct object *material);
 // The textured factor of a term, or what it is where there is no texture.
 const struct texture_ref *editable_texture(const struct object *material, uint32_t term);
 
-// For a closure of an editable material: `terms` values; returns their number, which is 0 where wi is
-// not above the surface.
+// For a closure of an editable material: a value for each term; returns their number, which is 0
+// where wi is not above the surface.
 uint32_t editable_values(const struct closure *closure, vec3 wi,
                          struct editable_value out[FORM_TERMS]);

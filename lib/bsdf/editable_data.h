@@ -28,7 +28,7 @@ struct editable {
     const struct texture_ref *texture[FORM_TERMS];
     const spectrum *values[FORM_CURVES]; // per coefficient
     struct curve_sampler sampler[FORM_TERMS];
-    // What a term reflects towards wo, at even steps of cos theta_o from 0 to 1, per unit of factor.
+    // What a term reflects towards wo per unit of factor, at even steps of cos theta_o.
     spectrum albedo[FORM_TERMS][EDITABLE_ANGLES];
     uint32_t lobe[FORM_TERMS]; // of either term
     uint32_t lobes;

@@ -76,7 +76,8 @@ static bool check_parameters(const struct model_parameters *p, const char *at) {
     }
     for (int k = 0; k < CURVE_CHANNELS; k++) {
         const struct limit per[] = {
-            {"reflectance", p->reflectance[k], 0, 1e6}, {"diffuse reflectance", p->diffuse[k], 0, 1},
+            {"reflectance", p->reflectance[k], 0, 1e6},
+            {"diffuse reflectance", p->diffuse[k], 0, 1},
             {"eta", p->eta[k], 0, 1e6}, {"k", p->k[k], 0, 1e6}, {"r0", p->r0[k], 0, 1},
         };
         for (size_t i = 0; i < sizeof per / sizeof *per; i++)

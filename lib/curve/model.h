@@ -22,8 +22,7 @@ struct model_parameters {
     double reflectance[CURVE_CHANNELS]; // factor on all but the diffuse term
     double diffuse[CURVE_CHANNELS];     // reflectance of an added Lambertian term; 0: no such term
     double exponent_u, exponent_v;      // along the tangent (round models: this one) and across
-    double alpha_u, alpha_v;            // roughness likewise: root mean square slope times sqrt 2,
-                                        // Oren-Nayar: standard deviation of the slope angle
+    double alpha_u, alpha_v;            // roughness likewise: root mean square slope times sqrt 2
     double eta[CURVE_CHANNELS], k[CURVE_CHANNELS]; // index; eta 0, k 1: reflects everything
     double r0[CURVE_CHANNELS];          // Schlick's reflectance at normal incidence
     double isotropy;                    // Schlick's p; fixed

@@ -105,8 +105,8 @@ bool operator_check(const struct curve_operator *o, const char *at) {
     if (o->kind == OPERATOR_AMPLIFY_X)
         return refuse(at, o, "would fold the curve: the fades are too narrow for this factor");
     const double width = o->magnitude > 0 ? o->b - o->a : o->d - o->c;
-    log_error("%s: translate-x by %g would fold the curve; a fade of %g degrees allows less than %g",
-              at, o->magnitude * 90 / CURVE_END, width * 90 / CURVE_END,
+    log_error("%s: translate-x by %g would fold the curve; a fade of %g degrees allows less than "
+              "%g", at, o->magnitude * 90 / CURVE_END, width * 90 / CURVE_END,
               width / 8 * 90 / CURVE_END);
     return false;
 }
@@ -127,8 +127,8 @@ static bool parse_one(const char *text, size_t length, struct curve_operator *o,
         p = end > p + 1 ? end : text;
     }
     if (p != text + length || n < 5) {
-        log_error("%s: \"%.*s\" is no operator, expected translate-x|translate-y|amplify-x|amplify-y,"
-                  "a,b,c,d,magnitude[,base]", at, (int)length, text);
+        log_error("%s: \"%.*s\" is no operator, expected translate-x|translate-y|amplify-x|"
+                  "amplify-y,a,b,c,d,magnitude[,base]", at, (int)length, text);
         return false;
     }
     o->kind = (enum operator_kind)kind;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Oren and Nayar 1994, the qualitative model: the roughness only scales two fixed terms. Curves of 1
-// over theta_i and theta_o, shared by both, are there to be bent by hand.
+// Oren and Nayar 1994, the qualitative model (sigma = alpha / sqrt 2): the roughness only scales
+// two fixed terms. Curves of 1 over theta_i and theta_o, which both share, are there to be bent.
 #include <math.h>
 
 #include "curve/model.h"
 
 static void make(const struct model_parameters *p, struct arena *arena, struct form *f) {
-    const double s2 = p->alpha_u * p->alpha_u;
+    const double s2 = 0.5 * p->alpha_u * p->alpha_u;
     const double a = 1 - 0.5 * s2 / (s2 + 0.33), b = 0.45 * s2 / (s2 + 0.09);
     (void)arena;
     struct form_term *t = form_add_term(f, "even", QUOTIENT_ONE, p->reflectance, a / M_PI);

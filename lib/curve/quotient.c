@@ -4,7 +4,8 @@
 #include <math.h>
 
 const char *const quotient_names[] = {"one", "v_cavity", "ashikhmin", "ward", "ward_duer",
-                                      "ward_bounded", "schlick", "schlick_rest", "oren_nayar", "facets", NULL};
+                                      "ward_bounded", "schlick", "schlick_rest", "oren_nayar",
+                                      "facets", NULL};
 
 static double at_least(double cosine) {
     return fmax(cosine, QUOTIENT_LEAST);

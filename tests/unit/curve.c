@@ -153,7 +153,8 @@ static void files_come_back_the_same(void) {
 static void good_files_are_read(void) {
     struct arena arena = {0};
     struct curve c;
-    CHECK(curve_parse(&c, &arena, "# mine\r\n\nfrom,to,value\r\n0,30,1\r\n30,90,2e1\r\n", "a.csv"));
+    CHECK(curve_parse(&c, &arena, "# mine\r\n\nfrom,to,value\r\n0,30,1\r\n30,90,2e1\r\n",
+                      "a.csv"));
     CHECK(c.basis.kind == BASIS_BOX && c.basis.count == 2 && c.basis.spacing == SPACING_ANY);
     CHECK(curve_at(&c, 2, 29.9 * DEGREE) == 1 && curve_at(&c, 0, 30.1 * DEGREE) == 20);
     CHECK(curve_parse(&c, &arena, "at,r,g,b\n0, 0,1,2\n 45 ,1,1,1\n90,0,0,0", "a.csv"));
@@ -290,7 +291,8 @@ static void tables_keep_their_bits_outside(void) {
         curve_edit(&d, 1 << 1, o, n);
         for (int i = 0; i < 270; i++) {
             const int bin = i % 90;
-            const bool inside = i / 90 == 1 && ((bin >= 9 && bin <= 40) || (bin >= 49 && bin <= 80));
+            const bool edited = (bin >= 9 && bin <= 40) || (bin >= 49 && bin <= 80);
+            const bool inside = i / 90 == 1 && edited;
             CHECK(inside || d.values[i] == c.values[i]);
         }
         CHECK_NEAR(d.values[90 + 25], fmax(0.5 + 2 * (c.values[90 + 25] - 0.5), 0), 1e-12);

@@ -124,7 +124,8 @@ static double reflected(const struct curve *c, double n) {
     return sum;
 }
 
-static double albedo_error(double n, enum basis_kind kind, uint32_t size, enum curve_filter filter) {
+static double albedo_error(double n, enum basis_kind kind, uint32_t size,
+                           enum curve_filter filter) {
     struct arena arena = {0};
     const struct curve_function f = {.kind = FUNCTION_COS_POWER, .p = {n}};
     const struct basis basis = basis_make(&arena, kind, size, SPACING_UNIFORM);

@@ -154,7 +154,7 @@ static double schlick(const struct view *v, const struct model_parameters *p, in
 }
 
 static double orennayar(const struct view *v, const struct model_parameters *p, int k) {
-    const double s2 = p->alpha_u * p->alpha_u;
+    const double s2 = p->alpha_u * p->alpha_u / 2;
     const double ti = acos(v->cos_i), to = acos(v->cos_o);
     const double c = cos(atan2(v->i[1], v->i[0]) - atan2(v->o[1], v->o[0]));
     (void)k;
