@@ -10,6 +10,7 @@
 // Kapustin 2007; Jones 2000).
 #include "accel/few.h"
 
+#include "accel/few_facet.h"
 #include "accel/placed_quadric.h"
 #include "base/mem.h"
 #include "scene/quadric.h"
@@ -17,58 +18,16 @@
 // Where a tree is faster for bounces: measured with tests/bench/packets.
 enum { MOST_TRIANGLES = 100, MOST_QUADRICS = 8 };
 
-struct few_triangle {
-    float edge[3][3], moment[3][3]; // of the edge opposite corner k: b - a, a x b
-    float normal[3];                // largest component 1
-    float corner[3];
-};
-
-struct few_id {
-    uint32_t shape, primitive;
-};
-
 struct few_quadric {
     struct placed_quadric placed;
     float centre[3], radius; // of a sphere that holds it
 };
 
 struct few {
-    struct few_triangle *triangles;
-    struct few_id *ids; // of the triangles, then the quadrics
+    struct few_facet *facets;
     struct few_quadric *quadrics;
-    uint32_t triangle_count, quadric_count;
+    uint32_t facet_count, quadric_count;
 };
-
-// In double: a difference of products of positions would lose the digits of short edges.
-static void cross_double(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) {
-        const int j = (i + 1) % 3, k = (i + 2) % 3;
-        out[i] = a[j] * b[k] - a[k] * b[j];
-    }
-}
-
-static void set_triangle(struct few_triangle *t, const struct mesh *m, const uint32_t index[3]) {
-    double p[3][3], e[3][3], n[3];
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < 3; i++)
-            p[k][i] = m->positions[index[k]][i];
-    for (int k = 0; k < 3; k++) {
-        const double *a = p[(k + 1) % 3], *b = p[(k + 2) % 3];
-        double moment[3];
-        cross_double(a, b, moment);
-        for (int i = 0; i < 3; i++) {
-            e[k][i] = b[i] - a[i];
-            t->edge[k][i] = (float)e[k][i];
-            t->moment[k][i] = (float)moment[i];
-        }
-    }
-    cross_double(e[0], e[1], n);
-    const double most = fmax(fabs(n[0]), fmax(fabs(n[1]), fabs(n[2])));
-    for (int i = 0; i < 3; i++) {
-        t->normal[i] = most > 0 ? (float)(n[i] / most) : 0;
-        t->corner[i] = (float)p[0][i];
-    }
-}
 
 static double column_length(const double m[4][4], int c) {
     return sqrt(m[0][c] * m[0][c] + m[1][c] * m[1][c] + m[2][c] * m[2][c]);
@@ -83,20 +42,6 @@ static bool keeps_angles(const double m[4][4]) {
             return false;
     }
     return true;
-}
-
-static bool fits(const struct scene *s, struct few *f) {
-    uint64_t triangles = 0, quadrics = 0;
-    for (uint32_t i = 0; i < s->shape_count; i++) {
-        if (s->shapes[i].kind == SHAPE_MESH)
-            triangles += s->shapes[i].mesh.triangle_count;
-        else
-            quadrics++;
-    }
-    f->triangle_count = (uint32_t)triangles;
-    f->quadric_count = (uint32_t)quadrics;
-    return triangles <= MOST_TRIANGLES && quadrics <= MOST_QUADRICS && s->instance_count == 0 &&
-           s->group_count == 0;
 }
 
 // A sphere's own, or one around the box that the columns span.
@@ -117,43 +62,40 @@ static void set_bounds(struct few_quadric *q) {
         1.0001f * (float)(q->placed.kind == SHAPE_SPHERE && keeps_angles(m) ? longest : sum);
 }
 
-static void add_shape(struct few *f, const struct scene *s, uint32_t shape, uint32_t *triangle,
-                      uint32_t *quadric) {
-    const struct mesh *m = &s->shapes[shape].mesh;
-    if (s->shapes[shape].kind != SHAPE_MESH) {
-        struct few_quadric *q = &f->quadrics[*quadric];
-        placed_quadric_init(&q->placed, s, shape);
-        set_bounds(q);
-        f->ids[f->triangle_count + (*quadric)++] = (struct few_id){shape, 0};
+static void add_shape(struct few *f, const struct scene *s, uint32_t shape) {
+    if (s->shapes[shape].kind == SHAPE_MESH) {
+        f->facet_count += few_facets_of(&s->shapes[shape].mesh, shape, f->facets + f->facet_count);
         return;
     }
-    for (uint32_t k = 0; k < m->triangle_count; k++) {
-        set_triangle(&f->triangles[*triangle], m, m->indices[k]);
-        f->ids[(*triangle)++] = (struct few_id){shape, k};
-    }
+    struct few_quadric *q = &f->quadrics[f->quadric_count++];
+    placed_quadric_init(&q->placed, s, shape);
+    set_bounds(q);
 }
 
-struct few *few_create(const struct scene *scene) {
-    struct few sizes, *f;
-    if (!fits(scene, &sizes))
+struct few *few_create(const struct scene *s) {
+    uint64_t triangles = 0, quadrics = 0;
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        if (s->shapes[i].kind == SHAPE_MESH)
+            triangles += s->shapes[i].mesh.triangle_count;
+        else
+            quadrics++;
+    }
+    if (triangles > MOST_TRIANGLES || quadrics > MOST_QUADRICS || s->instance_count > 0 ||
+        s->group_count > 0)
         return NULL;
-    f = mem_array(1, sizeof *f);
-    *f = sizes;
-    f->triangles = mem_array(f->triangle_count, sizeof *f->triangles);
-    f->quadrics = mem_array(f->quadric_count, sizeof *f->quadrics);
-    f->ids = mem_array((size_t)f->triangle_count + f->quadric_count, sizeof *f->ids);
-    uint32_t triangle = 0, quadric = 0;
-    for (uint32_t i = 0; i < scene->shape_count; i++)
-        add_shape(f, scene, i, &triangle, &quadric);
+    struct few *f = mem_array(1, sizeof *f);
+    f->facets = mem_array(triangles, sizeof *f->facets);
+    f->quadrics = mem_array(quadrics, sizeof *f->quadrics);
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        add_shape(f, s, i);
     return f;
 }
 
 void few_destroy(struct few *f) {
     if (!f)
         return;
-    mem_free(f->triangles);
+    mem_free(f->facets);
     mem_free(f->quadrics);
-    mem_free(f->ids);
     mem_free(f);
 }
 
@@ -163,30 +105,39 @@ static wide dot_with(const float a[3], struct wide3 b) {
     return a[0] * b.x + a[1] * b.y + a[2] * b.z;
 }
 
-// On which side of the edge opposite corner k the rays pass, times the area they span.
-static wide side(const struct few_triangle *t, int k, struct wide3 d, struct wide3 o_cross_d) {
-    return dot_with(t->moment[k], d) + dot_with(t->edge[k], o_cross_d);
+// On which side of an edge the rays pass, times the area they span.
+static wide side(const struct few_facet *f, int k, struct wide3 d, struct wide3 o_cross_d) {
+    return dot_with(f->moment[k], d) + dot_with(f->edge[k], o_cross_d);
 }
 
-// Weights of the corners, not normalised, their sum, and whether the whole line meets the triangle.
-// The signs at a corner can contradict each other by rounding; what they lack is tolerated, as a
-// share of the triangle.
-static wide_mask line_meets(const struct few_triangle *t, struct wide3 d, struct wide3 o_cross_d,
-                            wide weights[3], wide *all) {
+// Whether the whole line meets the facet; the sides of its edges. Signs at a corner can contradict
+// each other by rounding; what they lack is tolerated, as a share of the facet.
+static wide_mask line_meets(const struct few_facet *f, struct wide3 d, struct wide3 o_cross_d,
+                            wide sides[4]) {
     const float tolerated = 0x1p-21f;
     for (int k = 0; k < 3; k++)
-        weights[k] = side(t, k, d, o_cross_d);
-    *all = weights[0] + weights[1] + weights[2];
-    const wide slack = tolerated * wide_abs(*all);
-    const wide least = wide_min(weights[0], wide_min(weights[1], weights[2]));
-    const wide most = wide_max(weights[0], wide_max(weights[1], weights[2]));
+        sides[k] = side(f, k, d, o_cross_d);
+    wide least = wide_min(sides[0], wide_min(sides[1], sides[2]));
+    wide most = wide_max(sides[0], wide_max(sides[1], sides[2]));
+    wide all = sides[0] + sides[1] + sides[2];
+    if (f->count == 2) {
+        sides[3] = side(f, 3, d, o_cross_d);
+        least = wide_min(least, sides[3]);
+        most = wide_max(most, sides[3]);
+        all += sides[3];
+    }
+    const wide slack = tolerated * wide_abs(all);
     return (least >= -slack) | (most <= slack);
 }
 
-static wide plane_distance(const struct few_triangle *t, const struct accel_rays *r) {
-    const struct wide3 to_corner = {t->corner[0] - r->o.x, t->corner[1] - r->o.y,
-                                    t->corner[2] - r->o.z};
-    return dot_with(t->normal, to_corner) / dot_with(t->normal, r->d);
+// Where the rays meet the facet's plane: t is distance over speed; speed is not negative.
+static void meet_plane(const struct few_facet *f, const struct accel_rays *r, wide *distance,
+                       wide *speed) {
+    const struct wide3 to_corner = {f->corner[0] - r->o.x, f->corner[1] - r->o.y,
+                                    f->corner[2] - r->o.z};
+    const wide along = dot_with(f->normal, r->d);
+    *distance = wide_negate(along < 0, dot_with(f->normal, to_corner));
+    *speed = wide_abs(along);
 }
 
 // Lanes whose ray may meet the quadric before tmax: none that does is left out.
@@ -215,60 +166,90 @@ static void intersect_quadrics(const struct few *f, const struct accel_rays *r, 
             double t;
             if (near >> i & 1 && quadric_hit(&f->quadrics[k], r, i, (*best)[i], &t)) {
                 (*best)[i] = (float)t;
-                (*found)[i] = (int32_t)(f->triangle_count + k);
+                (*found)[i] = (int32_t)(f->facet_count + k);
                 h->u[i] = h->v[i] = 0;
             }
         }
     }
 }
 
-static void name_hits(const struct few *f, wide_int found, struct accel_hits *h) {
+// What is found so far.
+struct found {
+    wide t, u, v, all; // u, v: weights of vertices 1 and 2, over `all`
+    wide_int facet;    // or quadric, after the facets; negative: none
+    wide_mask second;  // of the facet's triangles
+};
+
+// The weights of a triangle's vertices 1 and 2 from those of its corners, q0 first.
+static void set_weights(wide_mask hit, const wide corners[3], uint32_t first, struct found *b) {
+    b->u = wide_select(hit, corners[(4 - first) % 3], b->u);
+    b->v = wide_select(hit, corners[(5 - first) % 3], b->v);
+    b->all = wide_select(hit, corners[0] + corners[1] + corners[2], b->all);
+}
+
+// A corner's weight is the side of the edge opposite.
+static void set_hit(const struct few_facet *f, wide_mask hit, const struct accel_rays *r,
+                    struct wide3 o_cross_d, const wide sides[4], struct found *b) {
+    if (f->count == 1) {
+        set_weights(hit, (const wide[3]){sides[1], sides[2], sides[0]}, f->first[0], b);
+        return;
+    }
+    const wide diagonal = side(f, FACET_DIAGONAL, r->d, o_cross_d);
+    const wide_mask back = sides[0] + sides[1] + sides[2] + sides[3] < 0;
+    const wide_mask second = wide_negate(back, diagonal) > 0;
+    set_weights(hit & ~second, (const wide[3]){sides[1], -diagonal, sides[0]}, f->first[0], b);
+    set_weights(hit & second, (const wide[3]){sides[2], sides[3], diagonal}, f->first[1], b);
+    b->second = (second & hit) | (b->second & ~hit);
+}
+
+static void name_hits(const struct few *f, const struct found *b, struct accel_hits *h) {
     for (int i = 0; i < WIDE_LANES; i++) {
-        const int32_t k = found[i];
-        h->shape[i] = k < 0 ? SCENE_NONE : f->ids[k].shape;
-        h->primitive[i] = k < 0 ? SCENE_NONE : f->ids[k].primitive;
+        const int32_t k = b->facet[i];
+        if (k < 0) {
+            h->shape[i] = h->primitive[i] = SCENE_NONE;
+        } else if ((uint32_t)k < f->facet_count) {
+            h->shape[i] = f->facets[k].shape;
+            h->primitive[i] = f->facets[k].primitive[b->second[i] & 1];
+        } else {
+            h->shape[i] = f->quadrics[(uint32_t)k - f->facet_count].placed.shape;
+            h->primitive[i] = 0;
+        }
     }
 }
 
 void few_intersect(const struct few *f, const struct accel_rays *r, struct accel_hits *h) {
     const struct wide3 d = r->d, o_cross_d = wide_cross(r->o, d);
-    wide best = r->tmax, u = {0}, v = {0}, all = wide_of(1);
-    wide_int found = wide_int_of(-1);
-    for (uint32_t k = 0; k < f->triangle_count; k++) {
-        wide w[3], sum;
-        const wide_mask meets = line_meets(&f->triangles[k], d, o_cross_d, w, &sum);
-        if (!wide_any(meets))
-            continue;
-        const wide t = plane_distance(&f->triangles[k], r);
-        const wide_mask hit = meets & (t > r->tmin) & (t < best);
+    struct found b = {.t = r->tmax, .all = wide_of(1), .facet = wide_int_of(-1)};
+    for (uint32_t k = 0; k < f->facet_count; k++) {
+        const struct few_facet *facet = &f->facets[k];
+        wide sides[4], distance, speed;
+        const wide_mask meets = line_meets(facet, d, o_cross_d, sides);
+        meet_plane(facet, r, &distance, &speed);
+        const wide_mask hit = meets & (distance > r->tmin * speed) & (distance < b.t * speed);
         if (!wide_any(hit))
             continue;
-        best = wide_select(hit, t, best);
-        u = wide_select(hit, w[1], u);
-        v = wide_select(hit, w[2], v);
-        all = wide_select(hit, sum, all);
-        found = wide_int_select(hit, wide_int_of((int32_t)k), found);
+        b.t = wide_select(hit, distance / speed, b.t);
+        b.facet = wide_int_select(hit, wide_int_of((int32_t)k), b.facet);
+        set_hit(facet, hit, r, o_cross_d, sides, &b);
     }
-    all = wide_select(all != 0, all, wide_of(1)); // of a triangle without area
-    h->u = u / all;
-    h->v = v / all;
+    const wide all = wide_select(b.all != 0, b.all, wide_of(1)); // of a triangle without area
+    h->u = b.u / all;
+    h->v = b.v / all;
     if (f->quadric_count)
-        intersect_quadrics(f, r, &best, &found, h);
-    h->t = best;
-    name_hits(f, found, h);
+        intersect_quadrics(f, r, &b.t, &b.facet, h);
+    h->t = b.t;
+    name_hits(f, &b, h);
 }
 
 uint32_t few_occluded(const struct few *f, const struct accel_rays *r) {
     const struct wide3 d = r->d, o_cross_d = wide_cross(r->o, d);
     const uint32_t live = wide_bits(r->tmin < r->tmax);
     uint32_t blocked = 0;
-    for (uint32_t k = 0; k < f->triangle_count && blocked != live; k++) {
-        wide w[3], sum;
-        const wide_mask meets = line_meets(&f->triangles[k], d, o_cross_d, w, &sum);
-        if (!wide_any(meets))
-            continue;
-        const wide t = plane_distance(&f->triangles[k], r);
-        blocked |= wide_bits(meets & (t > r->tmin) & (t < r->tmax));
+    for (uint32_t k = 0; k < f->facet_count && blocked != live; k++) {
+        wide sides[4], distance, speed;
+        const wide_mask meets = line_meets(&f->facets[k], d, o_cross_d, sides);
+        meet_plane(&f->facets[k], r, &distance, &speed);
+        blocked |= wide_bits(meets & (distance > r->tmin * speed) & (distance < r->tmax * speed));
     }
     for (uint32_t k = 0; k < f->quadric_count && blocked != live; k++) {
         const uint32_t near = come_near(&f->quadrics[k], r, r->tmax) & ~blocked;
