@@ -298,19 +298,18 @@ bool accel_mixes_packets(const struct accel *a) {
 }
 
 static void rays_from(const struct ray rays[ACCEL_PACKET], uint32_t active, struct accel_rays *p) {
-    float f[8][ACCEL_PACKET];
-    for (int i = 0; i < ACCEL_PACKET; i++) {
-        const struct ray *r = &rays[i];
-        for (int k = 0; k < 3; k++) {
-            f[k][i] = r->o[k];
-            f[3 + k][i] = r->d[k];
-        }
-        f[6][i] = r->tmin;
-        f[7][i] = active >> i & 1 ? r->tmax : -INFINITY;
+    const size_t fields[3] = {offsetof(struct ray, o), offsetof(struct ray, d),
+                              offsetof(struct ray, tmin)};
+    wide f[3][4];
+    for (int k = 0; k < 3; k++) {
+        const float *row[ACCEL_PACKET];
+        for (int i = 0; i < ACCEL_PACKET; i++)
+            row[i] = (const float *)(const void *)((const char *)&rays[i] + fields[k]);
+        wide_gather4(row, f[k]);
     }
-    *p = (struct accel_rays){{wide_load(f[0]), wide_load(f[1]), wide_load(f[2])},
-                             {wide_load(f[3]), wide_load(f[4]), wide_load(f[5])},
-                             wide_load(f[6]), wide_load(f[7])};
+    const wide_mask traced = wide_mask_of(active);
+    *p = (struct accel_rays){{f[0][0], f[0][1], f[0][2]}, {f[1][0], f[1][1], f[1][2]}, f[2][0],
+                             wide_select(traced, f[2][1], wide_of(-INFINITY))};
 }
 
 static void few_intersect16(const struct few *f, const struct ray rays[ACCEL_PACKET],

@@ -4,10 +4,15 @@
 // of other kinds) goes through the functions for one.
 #include "integrator/path.h"
 
+_Static_assert(offsetof(struct lane, eta2) == offsetof(struct lane, sampler.reversed) + 8 &&
+                   offsetof(struct lane, events) == offsetof(struct lane, eta2) + 4 &&
+                   offsetof(struct lane, from.lobe) == offsetof(struct lane, from.pdf_sa) + 12,
+               "what is gathered together lies together");
+
 // The paths of a packet. Lanes that are not active repeat one that is, and write to `spare`.
 struct vertices {
     uint32_t active;
-    struct lane *lane[WIDE_LANES];
+    struct lane *lane[WIDE_LANES], *to[WIDE_LANES]; // to read, to write
     const struct accel_hit *hit[WIDE_LANES];
     struct lane spare;
     struct wide3 d, beta;
@@ -23,32 +28,30 @@ static bool shades(const struct trace_context *ctx, const struct lane *l, const 
            (l->first_done || !ctx->sink->wants_surface);
 }
 
-static void gather3(struct vertices *v, size_t offset, struct wide3 *out) {
+// Four numbers of each lane, at an offset in struct lane.
+static void gather(const struct vertices *v, size_t offset, wide f[4]) {
     const float *row[WIDE_LANES];
-    wide f[4];
     for (int i = 0; i < WIDE_LANES; i++)
         row[i] = (const float *)(const void *)((const char *)v->lane[i] + offset);
     wide_gather4(row, f);
-    *out = (struct wide3){f[0], f[1], f[2]};
 }
 
 static void gather_lanes(struct vertices *v) {
-    const float *row[WIDE_LANES];
     wide f[4];
-    gather3(v, offsetof(struct lane, ray.d), &v->d);
-    gather3(v, offsetof(struct lane, beta), &v->beta);
-    for (int i = 0; i < WIDE_LANES; i++)
-        row[i] = (const float *)(const void *)&v->lane[i]->from.pdf_sa;
-    wide_gather4(row, f);
+    gather(v, offsetof(struct lane, ray.d), f);
+    v->d = (struct wide3){f[0], f[1], f[2]};
+    gather(v, offsetof(struct lane, beta), f);
+    v->beta = (struct wide3){f[0], f[1], f[2]};
+    gather(v, offsetof(struct lane, from.pdf_sa), f); // pdf_sa, delta, depth, lobe
     v->depth = (wide_uint)f[2];
     v->lobe = (wide_uint)f[3];
-    for (int i = 0; i < WIDE_LANES; i++) {
-        v->eta2[i] = v->lane[i]->eta2;
-        v->events[i] = v->lane[i]->events;
-        v->sampler.seed[i] = v->lane[i]->sampler.seed;
-        v->sampler.index[i] = v->lane[i]->sampler.index;
-        v->sampler.reversed[i] = v->lane[i]->sampler.reversed;
-    }
+    gather(v, offsetof(struct lane, sampler.seed), f); // seed, index, count, dimension
+    v->sampler.seed = (wide_uint)f[0];
+    v->sampler.index = (wide_uint)f[1];
+    gather(v, offsetof(struct lane, sampler.reversed), f); // reversed, padding, eta2, events
+    v->sampler.reversed = (wide_uint)f[0];
+    v->eta2 = f[2];
+    v->events = (wide_uint)f[3];
 }
 
 static void gather_materials(const struct world *w, struct vertices *v) {
@@ -109,6 +112,7 @@ struct light_lanes {
     struct light_samples s;
     spectrum emission[WIDE_LANES];
     uint32_t light[WIDE_LANES];
+    bool shared; // the light with index 0, and s.emission, are those of all
 };
 
 static void set_sample(struct light_lanes *out, int i, const struct light_sample *l) {
@@ -133,12 +137,10 @@ static uint32_t sample_lights(struct trace_context *ctx, const struct vertices *
     if (w->light_count == 1 && !w->choice.by_part && w->lights[0].type->has_wide &&
         w->lights[0].type->has_wide(w->lights[0].data)) {
         lit = wanted & wide_bits(w->lights[0].type->sample_wide(w->lights[0].data, &s->p, u, &out->s));
-        for (int i = 0; i < WIDE_LANES; i++) {
-            out->emission[i] = out->s.emission;
-            out->light[i] = 0;
-        }
+        out->shared = true;
         return lit;
     }
+    out->shared = false;
     if (w->choice.draws)
         draw(v, DRAW_LIGHT, choice);
     for (uint32_t left = wanted; left; left &= left - 1) {
@@ -179,8 +181,7 @@ static void scatter3(struct vertices *v, size_t offset, struct wide3 in) {
     float *row[WIDE_LANES];
     const wide f[4] = {in.x, in.y, in.z, (wide){0}};
     for (int i = 0; i < WIDE_LANES; i++) {
-        struct lane *to = v->active >> i & 1 ? v->lane[i] : &v->spare;
-        row[i] = (float *)(void *)((char *)to + offset);
+        row[i] = (float *)(void *)((char *)v->to[i] + offset);
     }
     wide_scatter4(f, row);
 }
@@ -213,10 +214,10 @@ static void light(const struct path *p, struct trace_context *ctx, struct vertic
         const int i = __builtin_ctz(lit);
         struct lane *to = v->lane[i];
         struct contribution *c = &to->shadow.contribution;
-        if (spectrum_is_black(l.emission[i]))
+        c->emission = l.shared ? l.s.emission : l.emission[i];
+        c->source = l.shared ? 0 : l.light[i];
+        if (spectrum_is_black(c->emission))
             continue;
-        c->emission = l.emission[i];
-        c->source = l.light[i];
         c->depth = v->depth[i] + 1;
         c->lobe = v->depth[i] ? v->lobe[i] : LOBE_DIFFUSE | LOBE_REFLECTION;
         to->shadow.ray.tmin = 0;
@@ -293,6 +294,7 @@ static bool choose(struct vertices *v, struct trace_context *ctx, struct lane *l
     for (int i = 0; i < WIDE_LANES; i++) {
         const int from = v->active >> i & 1 ? i : any;
         v->lane[i] = &lanes[packet->lanes[from]];
+        v->to[i] = v->active >> i & 1 ? v->lane[i] : &v->spare;
         v->hit[i] = &hits[from];
     }
     return true;
