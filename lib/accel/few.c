@@ -120,6 +120,7 @@ static wide_mask line_meets(const struct few_facet *f, struct wide3 d, struct wi
     wide least = wide_min(sides[0], wide_min(sides[1], sides[2]));
     wide most = wide_max(sides[0], wide_max(sides[1], sides[2]));
     wide all = sides[0] + sides[1] + sides[2];
+    sides[3] = all;
     if (f->count == 2) {
         sides[3] = side(f, 3, d, o_cross_d);
         least = wide_min(least, sides[3]);

@@ -43,6 +43,8 @@ bool mesh_transform(struct mesh *m, const struct transform *to_world);
 // weighted by their angle there (Thuermer and Wuethrich 1998, Computing Vertex Normals from
 // Polygonal Facets); (1, 0, 0) where all faces are degenerate. Replaces normals that exist.
 void mesh_compute_normals(struct mesh *m);
+// Whether all vertex normals are those of the flat triangles, to the rounding of float.
+bool mesh_is_flat(const struct mesh *m);
 
 struct mesh_options {
     int shape_index;      // which mesh of a file with several (serialized); else 0

@@ -122,3 +122,21 @@ struct mesh_attribute *mesh_add_attribute(struct mesh *m, const char *path, cons
     a->data = mem_array(count, (size_t)channels * sizeof(float));
     return a;
 }
+
+bool mesh_is_flat(const struct mesh *m) {
+    const double tolerance = 1e-6;
+    for (uint32_t t = 0; m->normals && t < m->triangle_count; t++) {
+        const uint32_t *i = m->indices[t];
+        const struct d3 n = cross3(edge(m->positions[i[0]], m->positions[i[1]]),
+                                   edge(m->positions[i[0]], m->positions[i[2]]));
+        const double length = sqrt(dot3(n, n));
+        for (int k = 0; k < 3; k++) {
+            const float *given = m->normals[i[k]];
+            if (!(fabs(given[0] * length - n.x) <= tolerance * length &&
+                  fabs(given[1] * length - n.y) <= tolerance * length &&
+                  fabs(given[2] * length - n.z) <= tolerance * length && length > 0))
+                return false;
+        }
+    }
+    return true;
+}

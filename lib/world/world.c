@@ -17,7 +17,7 @@ static void init_shapes(struct world *w, const struct scene *s) {
         const struct mesh *m = &from->mesh;
         w->shapes[i] = (struct world_shape){
             .indices = (const void *)m->indices, .positions = (const void *)m->positions,
-            .normals = (const void *)m->normals, .uvs = (const void *)m->uvs, .mesh = m,
+            .normals = mesh_is_flat(m) ? NULL : (const void *)m->normals, .uvs = (const void *)m->uvs, .mesh = m,
             .bsdf = from->bsdf, .light = from->light, .kind = (uint8_t)from->kind,
             .flip_normals = from->flip_normals};
         const uint32_t count = from->kind == SHAPE_MESH ? m->triangle_count : 1;

@@ -20,7 +20,7 @@ struct world_transform {
 struct world_shape {
     const uint32_t (*indices)[3];
     const float (*positions)[3];
-    const float (*normals)[3];  // NULL: none
+    const float (*normals)[3];  // NULL: none, or those of the triangles themselves
     const float (*uvs)[2];      // NULL: none
     const struct mesh *mesh;
     const struct object *bsdf;
