@@ -75,6 +75,7 @@ static spectrum transmittance(struct walker *w, struct ray ray, uint32_t medium)
     for (int i = 0; i < MOST_SURFACES; i++) {
         struct accel_hit hit;
         struct surface s;
+        ray = ray_ordinary(ray); // as in world_transmittance
         const bool found = accel_intersect(world->accel, &ray, &hit);
         if (found) {
             world_surface(world, &ray, &hit, &s);
@@ -89,8 +90,10 @@ static spectrum transmittance(struct walker *w, struct ray ray, uint32_t medium)
         const vec3 end = ray.o + ray.tmax * ray.d;
         ray.o = surface_offset(&s, ray.d);
         medium = across(world, &s, ray.d, medium);
-        if (ray.tmax < INFINITY)
+        if (ray.tmax < INFINITY) {
             ray.d = end - ray.o;
+            ray.tmax = 1;
+        }
     }
     return spectrum_grey(0);
 }
