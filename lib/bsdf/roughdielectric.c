@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rough boundary between two dielectrics (Walter et al. 2007, Microfacet Models for Refraction
 // through Rough Surfaces): every facet reflects and refracts as glass does. The interior is the
-// side opposite to the normal.
+// side opposite to the normal. Light that leaves a facet for another one is lost, or given back by
+// broad lobes on both sides (bsdf/facet_loss.h).
 #include "bsdf/rough_boundary.h"
 #include "bsdf/roughness.h"
 #include "bsdf/smooth.h"
@@ -11,6 +12,8 @@ struct roughdielectric {
     struct dielectric_index index;
     struct roughness roughness;
     struct texture_ref reflectance, transmittance;
+    int energy;
+    struct facet_loss loss[2]; // made by prepare: outside, inside
 };
 
 struct rough_data {
@@ -21,6 +24,10 @@ struct rough_data {
     float eta;     // of the far side over wo's
     float inv_area; // 1 / sigma(wo)
     spectrum reflectance, transmittance; // the latter includes the radiance's scaling
+    bool compensated;
+    struct facet_loss_at loss[2]; // on wo's side, on the far one
+    float regained[2];   // of the broad lobes there: energy form of f / lost(wi), times pi
+    float p_regained[2]; // their probabilities
 };
 
 static const struct param params[] = {
@@ -30,13 +37,36 @@ static const struct param params[] = {
      .def = "1", .max = 1, .unit = "", .help = "factor on the reflection"},
     {"specular_transmittance", PARAM_TEXTURE, offsetof(struct roughdielectric, transmittance),
      .def = "1", .max = 1, .unit = "", .help = "factor on the refraction"},
+    ENERGY_PARAM(struct roughdielectric, energy),
     PARAM_END,
 };
 
+struct boundary {
+    enum microfacet_type type;
+    float eta;
+};
+
+static double boundary_albedo(const void *context, float alpha_u, float alpha_v, vec3 v,
+                              int nodes) {
+    const struct boundary *b = context;
+    const struct microfacet m = microfacet_make(b->type, alpha_u, alpha_v);
+    double reflected, transmitted;
+    microfacet_albedo_from(&m, b->eta, v, nodes, &reflected, &transmitted);
+    return reflected + transmitted;
+}
+
 static bool prepare(struct object *self, struct arena *arena) {
-    const struct roughdielectric *r = self->data;
-    (void)arena;
-    return roughness_prepare(&r->roughness, self);
+    struct roughdielectric *r = self->data;
+    const float eta = r->index.int_ior / r->index.ext_ior;
+    if (!roughness_prepare(&r->roughness, self))
+        return false;
+    for (int i = 0; i < 2 && r->energy == ENERGY_COMPENSATED; i++) {
+        const struct boundary b = {(enum microfacet_type)r->roughness.distribution,
+                                   i ? 1 / eta : eta};
+        if (!roughness_loss(&r->roughness, self, boundary_albedo, &b, &r->loss[i], arena))
+            return false;
+    }
+    return true;
 }
 
 static uint32_t lobes(const void *data) {
@@ -46,6 +76,18 @@ static uint32_t lobes(const void *data) {
         return dielectric_lobes(eta);
     const uint32_t nearly_equal = fabsf(eta - 1) < 0.05f ? LOBE_SPECULAR : 0;
     return roughness_lobes(&self->roughness) | nearly_equal | LOBE_REFLECTION | LOBE_TRANSMISSION;
+}
+
+static void resolve_regained(struct rough_data *c, const struct roughdielectric *self) {
+    for (int i = 0; i < 2; i++)
+        c->loss[i] = facet_loss_at(&self->loss[c->mirrored ? 1 - i : i], c->facets.alpha_u);
+    const float lost = facet_lost(&c->loss[0], c->wo);
+    float share, back;
+    facet_loss_share(c->eta, c->loss[0].mean, c->loss[1].mean, &share, &back);
+    c->p_regained[0] = lost * (1 - share);
+    c->p_regained[1] = lost * share;
+    for (int i = 0; i < 2; i++)
+        c->regained[i] = c->loss[i].mean > 0 ? c->p_regained[i] / c->loss[i].mean : 0;
 }
 
 static const struct closure *resolve(const void *data, const struct bsdf_point *point, vec3 wo,
@@ -69,6 +111,9 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     c->inv_area = 1 / microfacet_area(&facets, c->wo);
     c->reflectance = R;
     c->transmittance = T / (c->eta * c->eta);
+    c->compensated = self->energy == ENERGY_COMPENSATED;
+    if (c->compensated)
+        resolve_regained(c, self);
     return &c->head;
 }
 
@@ -82,11 +127,9 @@ static float pdf_refracted(const struct rough_data *c, vec3 h, float F, float co
     return (1 - F) * refracted_pdf_sa(&c->facets, c->inv_area, c->eta, h, cos_o, cos_t);
 }
 
-static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
-    const struct rough_data *c = (const void *)closure;
+// Single scattering; wi is of the mirrored frame.
+static spectrum eval_once(const struct rough_data *c, vec3 wi, float *pdf_sa) {
     float cos_t;
-    if (c->mirrored)
-        wi[2] = -wi[2];
     *pdf_sa = 0;
     if (wi[2] > 0) {
         const vec3 h = normalize(c->wo + wi);
@@ -102,9 +145,25 @@ static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     return c->transmittance * (*pdf_sa * microfacet_G1(&c->facets, -wi));
 }
 
-static bool sample(const struct closure *closure, float u1, struct vec2 u2,
-                   struct bsdf_sample *s) {
+static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     const struct rough_data *c = (const void *)closure;
+    if (c->mirrored)
+        wi[2] = -wi[2];
+    const spectrum once = eval_once(c, wi, pdf_sa);
+    if (!c->compensated)
+        return once;
+    const int far = wi[2] > 0 ? 0 : 1;
+    const float cosine = INV_PI * fabsf(wi[2]);
+    const vec3 up = v3(wi[0], wi[1], fabsf(wi[2]));
+    *pdf_sa = (1 - c->p_regained[0] - c->p_regained[1]) * *pdf_sa +
+              c->p_regained[far] * facet_loss_pdf_sa(&c->loss[far], up);
+    return once + (far ? c->transmittance : c->reflectance) *
+                      (c->regained[far] * facet_lost(&c->loss[far], up) * cosine);
+}
+
+// Through a facet; what is sampled is single scattering, in the mirrored frame.
+static bool sample_once(const struct rough_data *c, float u1, struct vec2 u2,
+                        struct bsdf_sample *s) {
     const vec3 h = microfacet_sample(&c->facets, c->wo, u2);
     const float cos_o = dot(c->wo, h);
     if (!(cos_o > 0))
@@ -127,8 +186,34 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
     if ((s->wi[2] > 0) != (u1 < F) || !(s->pdf_sa > 0))
         return false; // the light met another facet
     s->weight *= microfacet_G1(&c->facets, u1 < F ? s->wi : -s->wi);
+    return true;
+}
+
+static void sample_regained(const struct rough_data *c, bool far, struct vec2 u2,
+                            struct bsdf_sample *s) {
+    s->wi = facet_loss_sample(&c->loss[far], u2);
+    s->wi[2] = far ? -s->wi[2] : s->wi[2];
+    s->eta = far ? c->eta : 1;
+    s->lobe = LOBE_GLOSSY | (far ? LOBE_TRANSMISSION : LOBE_REFLECTION);
+}
+
+static bool sample(const struct closure *closure, float u1, struct vec2 u2,
+                   struct bsdf_sample *s) {
+    const struct rough_data *c = (const void *)closure;
+    const float back = c->compensated ? c->p_regained[0] : 0;
+    const float regained = c->compensated ? back + c->p_regained[1] : 0;
+    if (u1 < regained)
+        sample_regained(c, u1 >= back, u2, s);
+    else if (!sample_once(c, (u1 - regained) / (1 - regained), u2, s))
+        return false;
     if (c->mirrored)
         s->wi[2] = -s->wi[2];
+    if (!c->compensated)
+        return true;
+    const spectrum f = eval(closure, s->wi, &s->pdf_sa);
+    if (!(s->pdf_sa > 0))
+        return false;
+    s->weight = f / s->pdf_sa;
     return true;
 }
 

@@ -25,3 +25,20 @@ uint32_t roughness_lobes(const struct roughness *r) {
     return maxf(u->value[0], v->value[0]) >= MICROFACET_ALPHA_MIN ? LOBE_GLOSSY | turned
                                                                   : LOBE_SPECULAR;
 }
+
+bool roughness_loss(const struct roughness *r, const struct object *self, facet_albedo_fn albedo,
+                    const void *context, struct facet_loss *loss, struct arena *arena) {
+    const bool pair = is_given(&r->alpha_u);
+    const struct texture_ref *u = pair ? &r->alpha_u : &r->alpha, *v = pair ? &r->alpha_v : u;
+    if (!u->texture && !v->texture) {
+        facet_loss_make(loss, u->value[0], v->value[0], albedo, context, arena);
+        return true;
+    }
+    if (pair) {
+        log_error_at(self->at, "%s: textures of alpha_u and alpha_v were found with compensated "
+                     "energy, expected one of alpha", self->type->name);
+        return false;
+    }
+    facet_loss_make_all(loss, albedo, context, arena);
+    return true;
+}

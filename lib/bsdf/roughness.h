@@ -3,6 +3,7 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
+#include "bsdf/facet_loss.h"
 #include "math/microfacet.h"
 
 struct roughness {
@@ -29,6 +30,11 @@ bool roughness_prepare(const struct roughness *r, const struct object *self);
 
 // LOBE_GLOSSY, LOBE_SPECULAR or both, whatever may occur on the surface.
 uint32_t roughness_lobes(const struct roughness *r);
+
+// Tabulates what the facets lose, over the roughness where that is textured. false after an error
+// message: of textured anisotropic roughness there is no table.
+bool roughness_loss(const struct roughness *r, const struct object *self, facet_albedo_fn albedo,
+                    const void *context, struct facet_loss *loss, struct arena *arena);
 
 // false: smooth here.
 static inline bool roughness_at(const struct roughness *r, const struct texture_point *at,

@@ -8,6 +8,11 @@
 // reflects inside is a mean over 64 equally spaced cosines that counts both ends in full, as in
 // Mitsuba: 1.6 % below the integral, which makes the base 2 % darker at an index of 1.5. Reference
 // pictures show that; plastic has the integral.
+//
+// With compensated energy the light that facets send to each other is given back
+// (bsdf/facet_loss.h): a broad lobe is added to the coat's reflection, the rest to T, and what the
+// coat reflects inside is all that it does not transmit, so that a white material returns
+// everything.
 #include "bsdf/roughness.h"
 #include "bsdf/smooth.h"
 #include "math/fresnel.h"
@@ -15,6 +20,7 @@
 #include "math/warp.h"
 
 enum { TABLE = 128, NODES_OUTSIDE = 32, NODES_INSIDE = 32, DIRECTIONS = 64, OUTSIDE = 32 };
+enum { NODES_COMPENSATED = 96 };
 
 struct roughplastic {
     struct dielectric_index index;
@@ -22,6 +28,7 @@ struct roughplastic {
     bool nonlinear;
     int distribution;
     float alpha;
+    int energy;
     // made by prepare
     struct plastic_coat coat;     // its fresnel_in is of the rough coat where there is one
     struct microfacet facets;
@@ -29,6 +36,8 @@ struct roughplastic {
     float mean_transmitted;       // 2 * integral of T(c) c dc
     float transmitted[TABLE + 1]; // T at cosine (i / TABLE)^2
     float reflected[TABLE + 1];
+    struct facet_loss loss; // on the outside
+    float regained;         // share of the loss that the coat reflects
 };
 
 struct rough_data {
@@ -38,6 +47,9 @@ struct rough_data {
     float quarter_area; // 1 / (4 sigma(wo))
     float p_specular;
     spectrum specular, diffuse; // the latter: f / T(wi), times pi
+    bool compensated;
+    struct facet_loss_at loss;
+    spectrum regained; // f / lost(wi), times pi
     spectrum albedo;
 };
 
@@ -55,16 +67,16 @@ static const struct param params[] = {
     {"alpha", PARAM_FLOAT, offsetof(struct roughplastic, alpha), .def = "0.1", .max = 1000,
      .unit = "", .help = "roughness; below 1e-4 the coat is smooth"},
     {"sample_visible", PARAM_IGNORED, 0, .unit = "", .help = "visible normals are always sampled"},
+    ENERGY_PARAM(struct roughplastic, energy),
     PARAM_END,
 };
 
 // Fills the tables of the coat's outside.
-static void tabulate_outside(struct roughplastic *self) {
+static void tabulate_outside(struct roughplastic *self, int nodes) {
     for (int i = 0; i <= TABLE; i++) {
         const float s = (float)i / TABLE;
         double r, t;
-        microfacet_albedo(&self->facets, self->coat.eta, maxf(s * s, 1e-6f), NODES_OUTSIDE, &r,
-                          &t);
+        microfacet_albedo(&self->facets, self->coat.eta, maxf(s * s, 1e-6f), nodes, &r, &t);
         self->reflected[i] = (float)r;
         self->transmitted[i] = (float)t;
     }
@@ -86,14 +98,18 @@ static double reflected_inside(const struct roughplastic *self, float c) {
     return r;
 }
 
-// Means over diffuse light of what the coat reflects inside and transmits from outside.
-static void integrate_directions(struct roughplastic *self) {
+// Mean over diffuse light of what the coat reflects inside.
+static void integrate_inside(struct roughplastic *self) {
     double sum = 0;
     for (int i = 0; i < DIRECTIONS; i++) {
         const double c = fmax((double)i / (DIRECTIONS - 1), 1e-6);
         sum += c * reflected_inside(self, (float)c);
     }
     self->coat.fresnel_in = (float)(2 * sum / DIRECTIONS);
+}
+
+// Mean over diffuse light of what the coat transmits from outside.
+static void integrate_outside(struct roughplastic *self) {
     double c[OUTSIDE], w[OUTSIDE], out = 0;
     gauss_legendre(OUTSIDE, c, w);
     for (int i = 0; i < OUTSIDE; i++)
@@ -101,9 +117,42 @@ static void integrate_directions(struct roughplastic *self) {
     self->mean_transmitted = (float)out;
 }
 
+// ---- compensated energy ---------------------------------------------------------------------
+
+struct coat_side {
+    const struct roughplastic *self;
+    float eta;
+};
+
+static double coat_albedo(const void *context, float alpha_u, float alpha_v, vec3 v, int nodes) {
+    const struct coat_side *side = context;
+    const struct microfacet m = microfacet_make(side->self->facets.type, alpha_u, alpha_v);
+    double reflected, transmitted;
+    microfacet_albedo_from(&m, side->eta, v, nodes, &reflected, &transmitted);
+    return reflected + transmitted;
+}
+
+// Adds to T its share of what is lost, and finds what remains inside from what leaves: transmission
+// of diffuse light is the same from both sides but for the factor eta^2.
+static void compensate(struct roughplastic *self, struct arena *arena) {
+    const float eta = self->coat.eta;
+    const struct coat_side outside = {self, eta}, inside = {self, 1 / eta};
+    struct facet_loss within;
+    float share, back;
+    facet_loss_make(&self->loss, self->alpha, self->alpha, coat_albedo, &outside, arena);
+    facet_loss_make(&within, self->alpha, self->alpha, coat_albedo, &inside, arena);
+    facet_loss_share(eta, self->loss.mean[0], within.mean[0], &share, &back);
+    self->regained = 1 - share;
+    const struct facet_loss_at loss = facet_loss_at(&self->loss, self->alpha);
+    for (int i = 0; i <= TABLE; i++)
+        self->transmitted[i] += share * facet_lost(&loss, v3(0, 0, sqr((float)i / TABLE)));
+    integrate_outside(self);
+    self->coat.fresnel_in = 1 - self->mean_transmitted / (eta * eta);
+}
+
 static bool prepare(struct object *object, struct arena *arena) {
     struct roughplastic *self = object->data;
-    (void)arena;
+    const bool compensated = self->energy == ENERGY_COMPENSATED;
     self->smooth = self->alpha < MICROFACET_ALPHA_MIN;
     self->facets = microfacet_make((enum microfacet_type)self->distribution, self->alpha,
                                    self->alpha);
@@ -111,8 +160,12 @@ static bool prepare(struct object *object, struct arena *arena) {
     self->coat = (struct plastic_coat){.eta = eta, .nonlinear = self->nonlinear,
                                        .fresnel_out = (float)fresnel_dielectric_average(eta)};
     if (!self->smooth)
-        tabulate_outside(self);
-    integrate_directions(self);
+        tabulate_outside(self, compensated ? NODES_COMPENSATED : NODES_OUTSIDE);
+    integrate_inside(self);
+    if (!self->smooth)
+        integrate_outside(self);
+    if (!self->smooth && compensated)
+        compensate(self, arena);
     return true;
 }
 
@@ -140,7 +193,14 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     c->diffuse = plastic_base(diffuse, self->coat.fresnel_in, self->nonlinear, self->coat.eta) *
                  lookup(self->transmitted, cos_o);
     const spectrum s = specular * lookup(self->reflected, cos_o);
-    const spectrum d = c->diffuse * self->mean_transmitted;
+    spectrum d = c->diffuse * self->mean_transmitted;
+    c->compensated = self->energy == ENERGY_COMPENSATED;
+    if (c->compensated) {
+        c->loss = facet_loss_at(&self->loss, self->alpha);
+        c->regained = specular * (self->regained * facet_lost(&c->loss, wo));
+        d += c->regained;
+        c->regained = c->loss.mean > 0 ? c->regained / c->loss.mean : spectrum_grey(0);
+    }
     const float sum = spectrum_mean(s) + spectrum_mean(d);
     c->p_specular = sum > 0 ? spectrum_mean(s) / sum : 1;
     c->albedo = s + d;
@@ -161,8 +221,9 @@ static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     const float F = fresnel_dielectric(dot(c->wo, h), self->coat.eta, &cos_t);
     const float diffuse = cos_i * INV_PI;
     *pdf_sa = lerpf(c->p_specular, diffuse, pdf_specular);
-    return c->specular * (F * pdf_specular * microfacet_G1(&self->facets, wi)) +
-           c->diffuse * (lookup(self->transmitted, cos_i) * diffuse);
+    const spectrum f = c->specular * (F * pdf_specular * microfacet_G1(&self->facets, wi)) +
+                       c->diffuse * (lookup(self->transmitted, cos_i) * diffuse);
+    return c->compensated ? f + c->regained * (facet_lost(&c->loss, wi) * diffuse) : f;
 }
 
 static bool sample(const struct closure *closure, float u1, struct vec2 u2,

@@ -119,8 +119,11 @@ static void facet_shares(const struct microfacet *m, float eta, vec3 v, vec3 h, 
         *transmitted = (1 - F) * microfacet_G1(m, -t);
 }
 
-void microfacet_albedo(const struct microfacet *m, float eta, float mu, int n, double *reflected,
-                       double *transmitted) {
+// Integral of f over the facets that v sees, with n x n nodes.
+static void integrate_visible(const struct microfacet *m, vec3 v, int n,
+                              void (*f)(const struct microfacet *m, float eta, vec3 v, vec3 h,
+                                        double *a, double *b),
+                              float eta, double *a, double *b) {
     enum { MOST = 256 };
     double x[MOST], w[MOST];
     assert(n <= MOST);
@@ -130,15 +133,39 @@ void microfacet_albedo(const struct microfacet *m, float eta, float mu, int n, d
         w[i] *= 0.5 * M_PI * sin(M_PI * x[i]);
         x[i] = sqr(sinf((float)(0.5 * M_PI * x[i])));
     }
-    const vec3 v = v3(safe_sqrt((1 - mu) * (1 + mu)), 0, mu);
-    *reflected = *transmitted = 0;
+    *a = *b = 0;
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
-            double r, t;
-            const vec3 h = microfacet_sample(m, v, (struct vec2){(float)x[i], (float)x[j]});
-            facet_shares(m, eta, v, h, &r, &t);
-            *reflected += w[i] * w[j] * r;
-            *transmitted += w[i] * w[j] * t;
+            double fa, fb;
+            f(m, eta, v, microfacet_sample(m, v, (struct vec2){(float)x[i], (float)x[j]}), &fa,
+              &fb);
+            *a += w[i] * w[j] * fa;
+            *b += w[i] * w[j] * fb;
         }
     }
+}
+
+static void mirror_share(const struct microfacet *m, float eta, vec3 v, vec3 h, double *reflected,
+                         double *none) {
+    const vec3 r = reflect(v, h);
+    (void)eta;
+    *reflected = r[2] > 0 ? (double)microfacet_G1(m, r) : 0;
+    *none = 0;
+}
+
+void microfacet_albedo_from(const struct microfacet *m, float eta, vec3 v, int n,
+                            double *reflected, double *transmitted) {
+    integrate_visible(m, v, n, facet_shares, eta, reflected, transmitted);
+}
+
+void microfacet_albedo(const struct microfacet *m, float eta, float mu, int n, double *reflected,
+                       double *transmitted) {
+    const vec3 v = v3(safe_sqrt((1 - mu) * (1 + mu)), 0, mu);
+    microfacet_albedo_from(m, eta, v, n, reflected, transmitted);
+}
+
+double microfacet_albedo_mirror(const struct microfacet *m, vec3 v, int n) {
+    double reflected, none;
+    integrate_visible(m, v, n, mirror_share, 1, &reflected, &none);
+    return reflected;
 }

@@ -92,8 +92,13 @@ vec3 microfacet_sample(const struct microfacet *m, vec3 v, struct vec2 u);
 // function, table 5). Arguments of +-1 give about +-4.
 float erf_inverse(float x);
 
-// What a rough dielectric boundary reflects and transmits of light from direction cosine mu on one
-// side, single scattering, by quadrature over visible normals with n x n nodes: the two sum to
-// less than 1 where facets shadow each other. eta as in math/fresnel.h. Isotropic.
+// What a rough dielectric boundary reflects and transmits of light from v, single scattering, by
+// quadrature over visible normals with n x n nodes: the two sum to less than 1 where facets shadow
+// each other. eta as in math/fresnel.h.
+void microfacet_albedo_from(const struct microfacet *m, float eta, vec3 v, int n,
+                            double *reflected, double *transmitted);
+// The same from direction cosine mu, for isotropic facets.
 void microfacet_albedo(const struct microfacet *m, float eta, float mu, int n, double *reflected,
                        double *transmitted);
+// What facets that reflect everything return of light from v without a second reflection.
+double microfacet_albedo_mirror(const struct microfacet *m, vec3 v, int n);
