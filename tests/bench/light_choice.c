@@ -103,7 +103,7 @@ int main(int argc, char **argv) {
         fprintf(stderr, "usage: light_choice SCENE\n");
         return 2;
     }
-    const struct job_options options = {.scene = argv[1], .spp = 1, 
+    const struct job_options options = {.scene = argv[1], .spp = 1,
                                         .reading = {.width = WIDTH, .height = HEIGHT,
                                                     .lenient = true}};
     struct job job;

@@ -7,14 +7,13 @@
 //  - a sample's density and emission equal pdf_sa and emission of the hit at the same place;
 //  - the mean of emission / pdf equals the integral of the emission (z-test, counted above);
 //  - the power of infinite lights equals the integral to 10 %;
-//  - delta lights and extremes against closed forms.
+//  - extremes against a closed form. (Lights at a point: light_points.c.)
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "check.h"
 #include "image/image.h"
 #include "math/hash.h"
-#include "math/warp.h"
 #include "property/light_cases.h"
 #include "statistics.h"
 
@@ -389,139 +388,7 @@ static void add_skies(void) {
     }
 }
 
-// ---- delta lights and extremes, against closed forms
-
-static void check_delta(void) {
-    struct light_sample s;
-    const struct vec2 u = {0.5f, 0.5f};
-    struct object *o = make_light("point", "position=1,2,3 intensity=4", NULL);
-    CHECK(light_type_of(o)->sample(o->data, v3(1, 2, 5), u, &s) && s.delta && s.pdf_sa == 1);
-    CHECK_NEAR(s.emission[0], 1, 1e-6);
-    CHECK_NEAR(s.wi[2], -1, 1e-6);
-    CHECK_NEAR(light_type_of(o)->power(o->data), 16 * M_PI, 1e-4);
-    CHECK(!light_type_of(o)->sample(o->data, v3(1, 2, 3), u, &s));
-    const float distances[4] = {1e-6f, 1e-3f, 1e3f, 1e6f};
-    o = make_light("point", "intensity=1e30", NULL);
-    for (int i = 0; i < 4; i++) {
-        CHECK(light_type_of(o)->sample(o->data, v3(0, 0, distances[i]), u, &s));
-        CHECK(spectrum_is_finite(s.emission));
-        CHECK_NEAR(s.emission[1] / fmin(1e30 / pow((double)distances[i], 2), 3.402823466e38), 1,
-                   1e-5);
-    }
-    o = make_light("spot", "intensity=3 cutoff_angle=40 beam_width=20", NULL);
-    const float angles[4] = {0, 19.9f, 30, 40.1f}, expected[4] = {3, 3, 1.5f, 0};
-    for (int i = 0; i < 4; i++) {
-        const float a = angles[i] * (PI / 180);
-        const bool lit = light_type_of(o)->sample(o->data, v3(2 * sinf(a), 0, 2 * cosf(a)), u, &s);
-        CHECK(lit == (expected[i] > 0));
-        if (lit)
-            CHECK_NEAR(s.emission[0], expected[i] / 4, 1e-4);
-    }
-    o = make_light("directional", "direction=0,0,-2 irradiance=5", NULL);
-    CHECK(light_type_of(o)->sample(o->data, v3(7, 8, 9), u, &s) && s.delta);
-    CHECK(s.wi[2] == 1 && isinf(s.distance) && s.emission[2] == 5);
-    CHECK_NEAR(light_type_of(o)->power(o->data), 5 * M_PI, 1e-4);
-}
-
-// ---- lights at a point: flux by quadrature over directions, and the light tree's bounds
-
-static char profile_path[64] = "/tmp/relume-profile-XXXXXX.ies";
-
-static void write_profile(void) {
-    static const char text[] = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 4 3 1 2 0 0 0\n1 1 1\n"
-                               "0 20 60 110\n0 90 180\n50 40 20 0\n50 60 10 0\n50 20 30 0\n";
-    const int file = mkstemps(profile_path, 4);
-    CHECK(file >= 0 && write(file, text, sizeof text - 1) == (ssize_t)sizeof text - 1);
-    close(file);
-}
-
-static void check_flux(struct object *o) {
-    enum { ROWS = 1500, COLUMNS = 90 };
-    const struct vec2 u = {0.5f, 0.5f};
-    double flux = 0;
-    for (int y = 0; y < ROWS; y++)
-        for (int x = 0; x < COLUMNS; x++) {
-            struct light_sample s;
-            const double theta = (y + 0.5) / ROWS * M_PI, phi = 2 * M_PI * (x + 0.5) / COLUMNS;
-            const vec3 w = v3((float)(sin(theta) * cos(phi)), (float)(sin(theta) * sin(phi)),
-                              (float)cos(theta));
-            if (!light_type_of(o)->sample(o->data, 3.0f * w, u, &s))
-                continue;
-            CHECK(s.delta && s.pdf_sa == 1);
-            CHECK_NEAR(dot(s.wi, w), -1, 1e-5);
-            flux += 9 * (double)spectrum_luminance(s.emission) * sin(theta);
-        }
-    flux *= M_PI / ROWS * 2 * M_PI / COLUMNS;
-    printf("%s: power %.5g, by quadrature %.5g\n", o->type->name,
-           (double)light_type_of(o)->power(o->data), flux);
-    CHECK_NEAR(light_type_of(o)->power(o->data) / flux, 1, 5e-3);
-}
-
-// A tree must reach the light from wherever it lights.
-static void check_bounds(struct object *o, float size) {
-    struct light_bounds b[3];
-    struct light_tree t;
-    struct rng rng = {11};
-    int lit = 0;
-    for (int i = 0; i < 3; i++)
-        b[i] = (struct light_bounds){.min = v3(5, 5, 5), .max = v3(6, 6, 6), .cos_o = -1,
-                                     .axis = v3(0, 1, 0), .intensity = 1};
-    light_type_of(o)->bounds(o->data, 0, &b[1]);
-    CHECK(b[1].intensity > 0 && isfinite(b[1].intensity));
-    light_tree_init(&t, b, 3);
-    for (int i = 0; i < 200000; i++) {
-        struct light_sample s;
-        const struct vec2 u = {rng_float(&rng), rng_float(&rng)};
-        const float x = rng_float(&rng), y = rng_float(&rng), z = rng_float(&rng);
-        const struct light_place at = {
-            size * (i % 4 ? 4.0f : 1.1f) * v3(2 * x - 1, 2 * y - 1, 2 * z - 1),
-            warp_sphere((struct vec2){rng_float(&rng), rng_float(&rng)})};
-        if (!light_type_of(o)->sample(o->data, at.p, u, &s))
-            continue;
-        lit++;
-        CHECK(light_tree_pmf(&t, &at, 1) > 0);
-        // the sample itself lies inside
-        for (int k = 0; k < 3; k++)
-            CHECK(s.p[k] >= b[1].min[k] - 1e-5f * size && s.p[k] <= b[1].max[k] + 1e-5f * size);
-    }
-    CHECK(lit > 20);
-    light_tree_finish(&t);
-}
-
-static void check_points(void) {
-    char overrides[128];
-    write_profile();
-    snprintf(overrides, sizeof overrides, "unit=cd intensity=2 filename=%s", profile_path);
-    struct object *o[] = {
-        make_light("point", "intensity=4", NULL),
-        make_light("spot", "intensity=3 cutoff_angle=40 beam_width=20", NULL),
-        make_light("spot", "intensity=3 cutoff_angle=130 beam_width=0", NULL),
-        make_light("projector", "irradiance=2 scale=3 fov=70", NULL),
-        make_light("projector", "irradiance=2 fov=3", NULL),
-        make_light("ies", overrides, NULL)};
-    for (size_t i = 0; i < sizeof o / sizeof *o; i++) {
-        if (i != 4) // too narrow for the quadrature
-            check_flux(o[i]);
-        check_bounds(o[i], 1);
-    }
-    struct light_sample s;
-    const struct vec2 u = {0.5f, 0.5f};
-    // a projector lights the plane z = 2 evenly: irradiance pi x 2 x 3 / 2^2
-    for (int i = 0; i < 3; i++)
-        if (light_type_of(o[3])->sample(o[3]->data, v3(0.5f * (float)i, -0.4f * (float)i, 2), u, &s))
-            CHECK_NEAR(s.emission[0] * s.wi[2] / (-1.5 * M_PI), 1, 1e-5);
-    // 40 cd at 20 degrees towards +x, 60 towards -y
-    const float a = 20 * (PI / 180);
-    CHECK(light_type_of(o[5])->sample(o[5]->data, v3(2 * sinf(a), 0, 2 * cosf(a)), u, &s));
-    CHECK_NEAR(s.emission[1], 2 * 40.0 / 4, 1e-3);
-    CHECK(light_type_of(o[5])->sample(o[5]->data, v3(0, -2 * sinf(a), 2 * cosf(a)), u, &s));
-    CHECK_NEAR(s.emission[1], 2 * 60.0 / 4, 1e-3);
-    light_type_of(o[5])->finish(o[5]->data);
-    unlink(profile_path);
-    for (int i = 0; i < case_count; i++)
-        if (cases[i].shape && case_type(&cases[i])->parts(cases[i].light->data) == 1)
-            check_bounds(cases[i].light, 2);
-}
+// ---- extremes, against a closed form
 
 // Irradiance of a 2 x 2 m rectangle d metres above its middle (Lambert), for radiance L.
 static double rectangle_irradiance(double d) {
@@ -580,8 +447,6 @@ int main(void) {
     qsort(tested, (size_t)tested_count, sizeof tested[0], by_value);
     printf("%d tests, smallest p %.3g, median %.3g, threshold %.3g\n", tested_count, tested[0],
            tested[tested_count / 2], least);
-    check_delta();
-    check_points();
     check_extremes();
     for (int i = 0; i < case_count; i++)
         if (case_type(&cases[i])->finish && (i == 0 || cases[i].light != cases[i - 1].light))
