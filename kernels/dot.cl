@@ -4,7 +4,7 @@
 //     dot:       out[tile][channel][lane]  = sum_c weight[c][channel] T[tile][c][channel][lane]
 //     add_terms: out[tile][channel][lane] += sum_k weight[k][channel] T[tile][term[k]][channel][lane]
 //
-// One work-item a tile. A matrix is contracted over its last axis by dot, a row being a tile; over
+// One work-item a tile; the tiles of t begin with number `first` of out. A matrix is contracted over its last axis by dot, a row being a tile; over
 // its first axis by contract_first, one work-item a tile and column:
 //
 //     out[tile][b][channel][lane] = sum_a weight[a][channel] T[tile][a][b][channel][lane]
@@ -19,7 +19,7 @@
 
 #define DEFINE(suffix, type, LOAD)                                                                 \
     kernel void dot_##suffix(global const type *t, global const float *weight, uint coefficients,  \
-                             global float16 *out) {                                                \
+                             global float16 *out, uint first) {                                    \
         float16 r0 = 0, r1 = 0, r2 = 0, r3 = 0, g0 = 0, g1 = 0, g2 = 0, g3 = 0;                    \
         float16 b0 = 0, b1 = 0, b2 = 0, b3 = 0;                                                    \
         const size_t tile = get_global_id(0);                                                      \
@@ -38,7 +38,7 @@
             b2 += weight[2] * LOAD(t, 10);                                                         \
             b3 += weight[2] * LOAD(t, 11);                                                         \
         }                                                                                          \
-        out += tile * TILE_ROW;                                                                    \
+        out += (first + tile) * TILE_ROW;                                                          \
         out[0] = r0, out[1] = r1, out[2] = r2, out[3] = r3;                                        \
         out[4] = g0, out[5] = g1, out[6] = g2, out[7] = g3;                                        \
         out[8] = b0, out[9] = b1, out[10] = b2, out[11] = b3;                                      \
@@ -46,10 +46,10 @@
                                                                                                    \
     kernel void add_terms_##suffix(global const type *t, global const float *weight,               \
                                    global const uint *term, uint terms, uint coefficients,         \
-                                   global float16 *out) {                                          \
+                                   global float16 *out, uint first) {                              \
         const size_t tile = get_global_id(0);                                                      \
         t += tile * coefficients * TILE_ROW;                                                       \
-        out += tile * TILE_ROW;                                                                    \
+        out += (first + tile) * TILE_ROW;                                                          \
         for (uint k = 0; k < terms; k++, weight += TILE_CHANNELS) {                                \
             global const type *row = t + (size_t)term[k] * TILE_ROW;                               \
             for (uint channel = 0; channel < TILE_CHANNELS; channel++)                             \

@@ -148,6 +148,8 @@ bool job_open(struct job *job, const struct job_options *o) {
     reading.threads = o->threads;
     const double start = time_seconds();
     job->scene = scene_read(o->scene, &reading);
+    if (job->scene && o->edit_scene)
+        o->edit_scene(job->scene, o->edit_user);
     job->world = job->scene ? world_create(job->scene, o->threads) : NULL;
     if (!job->world || !prepare(job, o)) {
         job_close(job);

@@ -20,6 +20,9 @@ struct job_options {
     int threads;
     const char *aovs;             // "albedo,N" or NULL
     bool variance, light_groups, paths;
+    // Changes the scene between reading it and building the world; or NULL.
+    void (*edit_scene)(struct scene *s, void *user);
+    void *edit_user;
     const volatile sig_atomic_t *stop;
     void (*progress)(void *user, double done, const struct film *film);
     void *user;

@@ -74,7 +74,7 @@ void render(struct film *film, const struct render_options *options, struct rend
         const double pass_start = time_seconds();
         const uint32_t first = (uint32_t)film_next(film);
         const uint32_t count = pass_length(first, options, per_sample, state.seconds);
-        if (!tracer_run(tracer, film_tile_count(film), first, count))
+        if (!tracer_run(tracer, 0, film_tile_count(film), first, count))
             break;
         film_commit(film, count);
         state.seconds = time_seconds() - start;

@@ -19,6 +19,7 @@ struct tracer {
     struct tracer_options options;
     int threads;
     struct worker *workers;
+    uint32_t first_tile;
     uint32_t first, count;    // samples of the run
     atomic_bool abandoned;
     _Atomic double stop_time; // when the stop was first seen; 0: not yet
@@ -85,7 +86,7 @@ static void trace_tile(void *ctx, size_t tile, int index) {
     accel_thread_init();
     if (give_up(t))
         return;
-    sink->type->open(sink, (uint32_t)tile, &wanted);
+    sink->type->open(sink, t->first_tile + (uint32_t)tile, &wanted);
     const int x0 = wanted.x0 / PACKET_SIDE * PACKET_SIDE, y0 = wanted.y0 / PACKET_SIDE * PACKET_SIDE;
     for (uint32_t s = t->first; s < t->first + t->count; s++) {
         for (int y = y0; y < wanted.y1; y += PACKET_SIDE)
@@ -116,7 +117,8 @@ struct tracer *tracer_create(const struct tracer_options *options,
     return t;
 }
 
-bool tracer_run(struct tracer *t, uint32_t tiles, uint32_t first, uint32_t count) {
+bool tracer_run(struct tracer *t, uint32_t tile, uint32_t tiles, uint32_t first, uint32_t count) {
+    t->first_tile = tile;
     t->first = first;
     t->count = count;
     thread_for(t->threads, tiles, trace_tile, t);

@@ -10,10 +10,11 @@
 // padded with spaces so that the data begin at a multiple of 128; then the arrays, each aligned to
 // 128 bytes. Arrays of block N:
 //
-//     N.pixels   U32 [n]             index y * width + x of each pixel, increasing
+//     N.pixels   U32 [n]             index y * width + x of each pixel, all different
 //     N.values   F32 or BF16 [tiles, coefficients, channels, 64]   mean of the two half-sums
 //     N.halves   same                half their difference; absent where the tensor has no noise
 //     N.view     F32 [tiles, 64]     angle between normal and eye for f_o, radians; or absent
+//     N.weights  F32 [coefficients, channels]   the weights of the scene as it was; or absent
 //     N.edges0   F64 [bins + 1]      bin edges of the first axis, radians (N.edges1: of the second)
 //
 // and "fixed" F32 [3, height, width], what no weight changes; or absent. Tiles are 64 pixels in the
@@ -60,6 +61,7 @@ struct tensor_block {
     const void *values;
     const void *halves; // NULL: no noise
     const float *view;  // NULL: none
+    const float *weights; // NULL: none
 };
 
 struct tensor {

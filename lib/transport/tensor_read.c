@@ -201,11 +201,17 @@ static bool read_pixels(struct tensor_file *f, uint32_t block, struct tensor_blo
     b->pixels = find_array(f, &pixels, true, &wrong);
     if (wrong)
         return false;
-    for (uint64_t i = 0; i < b->pixel_count; i++)
-        if (b->pixels[i] >= most || (i && b->pixels[i] <= b->pixels[i - 1]))
-            return fail(f, "array %s: pixel %" PRIu64 " of the list is out of order or outside the "
-                        "picture", pixels.name, i);
-    return true;
+    uint64_t *seen = mem_array(most / 64 + 1, sizeof *seen), wrong_one = 0;
+    for (uint64_t i = 0; i < b->pixel_count && !wrong; i++) {
+        const uint32_t p = b->pixels[i];
+        wrong = p >= most || seen[p / 64] >> p % 64 & 1;
+        wrong_one = i;
+        if (!wrong)
+            seen[p / 64] |= 1ull << p % 64;
+    }
+    mem_free(seen);
+    return !wrong || fail(f, "array %s: pixel %" PRIu64 " of the list is outside the picture, or there "
+                          "twice", pixels.name, wrong_one);
 }
 
 static bool read_block(struct tensor_file *f, const struct json *j, uint32_t block,
@@ -237,6 +243,11 @@ static bool read_block(struct tensor_file *f, const struct json *j, uint32_t blo
     if (wrong)
         return false;
     b->view = find_array(f, &view, false, &wrong);
+    if (wrong)
+        return false;
+    const struct array weights = {array_name(f, block, "weights"), "F32", 2,
+                                  {b->coefficients, channels}};
+    b->weights = find_array(f, &weights, false, &wrong);
     return !wrong;
 }
 
@@ -337,6 +348,8 @@ bool tensor_check_values(const struct tensor_file *f) {
         const uint64_t n = tensor_bytes(b) / tensor_value_size(b->storage);
         if (!all_finite(b->values, b->storage, n) ||
             (b->halves && !all_finite(b->halves, b->storage, n)) ||
+            (b->weights &&
+             !all_finite(b->weights, TENSOR_F32, (uint64_t)b->coefficients * b->channels)) ||
             (b->view && !all_finite(b->view, TENSOR_F32, tensor_tiles(b) * TENSOR_LANES)))
             return fail(f, "block %u (%s.%s) holds values that are not finite", i, b->object, b->term);
     }

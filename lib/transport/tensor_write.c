@@ -109,6 +109,7 @@ static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
     const uint64_t tiles = tensor_tiles(b);
     const uint64_t shape[4] = {tiles, b->coefficients, b->channels, TENSOR_LANES};
     const uint64_t view[2] = {tiles, TENSOR_LANES};
+    const uint64_t weights[2] = {b->coefficients, b->channels};
     const char *dtype = storage_name(b->storage);
     const size_t item = tensor_value_size(b->storage);
     add_small(p, i, "pixels", "U32", 4, &b->pixel_count, 1, b->pixels, b->pixel_count * 4);
@@ -119,6 +120,8 @@ static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
     }
     if (b->view)
         add_small(p, i, "view", "F32", 4, view, 2, b->view, tiles * TENSOR_LANES * 4);
+    if (b->weights)
+        add_small(p, i, "weights", "F32", 4, weights, 2, b->weights, weights[0] * weights[1] * 4);
     w->values[i] = add_small(p, i, "values", dtype, item, shape, 4, NULL, 0);
     if (b->halves)
         w->halves[i] = add_small(p, i, "halves", dtype, item, shape, 4, NULL, 0);

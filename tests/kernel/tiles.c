@@ -127,9 +127,9 @@ static void dot(struct fixture *f, enum tensor_storage s) {
         struct compute_buffer t = to_device(f, f->stored[s], f->values * tensor_value_size(s));
         struct compute_buffer w = to_device(f, f->weight, c * 3 * sizeof(float));
         struct compute_arg args[] = {COMPUTE_BUFFER(&t), COMPUTE_BUFFER(&w), COMPUTE_UINT(c),
-                                     COMPUTE_BUFFER(NULL)};
+                                     COMPUTE_BUFFER(NULL), COMPUTE_UINT(0)};
         snprintf(name, sizeof name, "dot_%s", suffix[s]);
-        kernel_agrees(f, "dot", name, args, 4, TILES, zero, twin, n);
+        kernel_agrees(f, "dot", name, args, 5, TILES, zero, twin, n);
         compute_buffer_destroy(&t);
         compute_buffer_destroy(&w);
     }
@@ -156,9 +156,9 @@ static void add_terms(struct fixture *f, enum tensor_storage s) {
         struct compute_buffer terms = to_device(f, f->term, sizeof f->term);
         struct compute_arg args[] = {COMPUTE_BUFFER(&t), COMPUTE_BUFFER(&w), COMPUTE_BUFFER(&terms),
                                      COMPUTE_UINT(TERMS), COMPUTE_UINT(COEFFICIENTS),
-                                     COMPUTE_BUFFER(NULL)};
+                                     COMPUTE_BUFFER(NULL), COMPUTE_UINT(0)};
         snprintf(name, sizeof name, "add_terms_%s", suffix[s]);
-        kernel_agrees(f, "dot", name, args, 6, tiles, start, twin, n);
+        kernel_agrees(f, "dot", name, args, 7, tiles, start, twin, n);
         compute_buffer_destroy(&t);
         compute_buffer_destroy(&w);
         compute_buffer_destroy(&terms);

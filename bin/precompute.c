@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// relume precompute: tensors, from which pictures are replayed.
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "base/progress.h"
+#include "driver/precompute_relight.h"
+#include "driver/stop.h"
+#include "subcommand.h"
+
+struct values {
+    const char *kind, *scene, *output, *basis, *integrator, *sampler;
+    int spp, size[2], crop[4], max_depth, seed, threads;
+    double memory;
+    bool half, dry_run, lenient, quiet, json;
+    struct option_list defines;
+};
+
+#define AT(member) offsetof(struct values, member)
+
+static const struct option_argument arguments[] = {
+    {"KIND", AT(kind), "relight: how the picture depends on its lighting", false, false},
+    {"SCENE", AT(scene), "Mitsuba XML scene (.xml)", false, false},
+    {.name = NULL},
+};
+
+static const struct option_spec options[] = {
+    {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output),
+     .argument = "T.safetensors", .help = "the tensor to write", .required = true},
+    {.name = "basis", .type = OPTION_TEXT, .offset = AT(basis), .argument = "NAME", .def = "lights",
+     .help = "lights: a coefficient per emitter or `group` name;\n"
+             "pixels:WxH: per cell of a latitude-longitude grid of directions;\n"
+             "sh:N: spherical harmonics to order N;\n"
+             "haar:WxH, daub4:WxH: wavelets over the cells"},
+    {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
+     .help = "samples per pixel; 0: what the scene asks for", .def = "0"},
+    {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
+     .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
+    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
+     .min = 0, .max = 65536, .help = "these pixels only; X1 and Y1 are just past the last"},
+    {.name = "integrator", .type = OPTION_TEXT, .offset = AT(integrator), .argument = "NAME",
+     .help = "integrator in place of the scene's"},
+    {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
+     .help = "sampler in place of the scene's"},
+    {.name = "max-depth", .type = OPTION_INT, .offset = AT(max_depth), .argument = "N", .min = -1,
+     .max = 1000000, .def = "0", .help = "most edges of a path; 0: as the scene says"},
+    {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
+     .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
+    {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
+     .help = "store 16 bits (bfloat16) a coefficient"},
+    {.name = "memory", .type = OPTION_NUMBER, .offset = AT(memory), .argument = "GB", .min = 0,
+     .max = 1e6, .def = "0", .help = "most memory for sums; 0: half of what there is"},
+    {.name = "dry-run", .type = OPTION_FLAG, .offset = AT(dry_run),
+     .help = "only say how many bytes and hours it would take"},
+    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
+     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
+    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
+     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_THREADS(struct values, threads),
+    OPTION_QUIET(struct values, quiet),
+    OPTION_JSON(struct values, json),
+    OPTION_END,
+};
+
+static void show_progress(void *user, double done) {
+    progress_update(user, done, "");
+}
+
+static void report(const struct values *v, const struct relight_report *r) {
+    char time[32];
+    progress_format_seconds(r->seconds, time, sizeof time);
+    if (r->rejected)
+        log_warn("%llu samples were not finite and count as black", (unsigned long long)r->rejected);
+    if (!v->quiet)
+        log_info("%s: %u coefficients a pixel, %.1f MB, %llu samples per pixel %s %s (%.1f MB of sums)",
+                 v->output, r->coefficients, (double)r->file_bytes * 1e-6,
+                 (unsigned long long)r->samples, v->dry_run ? "would take" : "took", time,
+                 (double)r->sums_bytes * 1e-6);
+    if (v->json) {
+        struct json *j = json_new_object();
+        json_add_text(j, "output", v->output);
+        json_add_bool(j, "dry_run", v->dry_run);
+        json_add_count(j, "coefficients", r->coefficients);
+        json_add_count(j, "file_bytes", (int64_t)r->file_bytes);
+        json_add_count(j, "sums_bytes", (int64_t)r->sums_bytes);
+        json_add_count(j, "samples", (int64_t)r->samples);
+        json_add_count(j, "paths", (int64_t)r->paths);
+        json_add_count(j, "rays", (int64_t)r->rays);
+        json_add_count(j, "rejected_samples", (int64_t)r->rejected);
+        json_add_number(j, "seconds", r->seconds);
+        json_print(j, false);
+        json_destroy(j);
+    }
+}
+
+static int run_relight(const struct values *v, const char *command,
+                       const struct scene_define *defines) {
+    struct progress progress;
+    struct relight_report result;
+    progress_begin(&progress, "precompute", v->quiet);
+    const struct relight_options o = {
+        .job = {.scene = v->scene, .spp = v->spp,
+                .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth,
+                .seed = (uint32_t)v->seed, .threads = v->threads, .stop = stop_on_signals(),
+                .reading = {.defines = defines, .define_count = v->defines.count,
+                            .lenient = v->lenient, .integrator = v->integrator,
+                            .sampler = v->sampler, .width = v->size[0], .height = v->size[1]}},
+        .basis = v->basis, .output = v->output, .storage = v->half ? TENSOR_BF16 : TENSOR_F32,
+        .most_memory = v->memory * 1e9, .dry_run = v->dry_run, .command = command,
+        .version = RELUME_VERSION, .progress = v->quiet || v->dry_run ? NULL : show_progress,
+        .user = &progress};
+    const bool done = precompute_relight(&o, &result);
+    progress_end(&progress);
+    if (done)
+        report(v, &result);
+    return done ? EXIT_DONE : EXIT_FAILED;
+}
+
+static int run(const void *values, const char *command) {
+    const struct values *v = values;
+    if (strcmp(v->kind, "relight") != 0) {
+        log_error("precompute %s: expected relight", v->kind);
+        return EXIT_USAGE;
+    }
+    if (v->quiet)
+        log_set_level(LOG_WARN);
+    struct arena arena = {0};
+    const struct scene_define *defines = defines_parse(&v->defines, &arena);
+    const int code = defines ? run_relight(v, command, defines) : EXIT_USAGE;
+    arena_finish(&arena);
+    return code;
+}
+
+const struct subcommand subcommand_precompute = {
+    .entry = {.name = "precompute", .help = "make a tensor, from which pictures are replayed",
+              .size = sizeof(struct values)},
+    .options = {.options = options, .arguments = arguments,
+                .description = "precompute relight: how the picture of SCENE depends on its "
+                               "lighting, with all bounces.\n`relume relight` then makes pictures "
+                               "under other lighting at the speed of memory.",
+                .examples = "  relume precompute relight room.xml -o room.safetensors --basis lights "
+                            "--spp 256\n"
+                            "  relume precompute relight car.xml -o car.safetensors --basis "
+                            "pixels:32x16 --dry-run\n"},
+    .run = run,
+};

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/relight.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "curve/wavelet.h"
+#include "image/image.h"
+#include "math/directions.h"
+
+enum { MOST_SH = 121 };
+
+// What the tensor's coefficients are of.
+struct basis {
+    enum { LIGHTS, CELLS, HARMONICS } kind;
+    bool transformed;
+    enum wavelet wavelet;
+    int width, height, order;
+    const struct json *lights;
+};
+
+static bool read_basis(const struct tensor *t, const char *path, struct basis *b) {
+    const struct json *j = json_get(t->meta, "basis");
+    const char *type = json_text(json_get(j, "type"));
+    const uint32_t count = t->block_count == 1 ? t->blocks[0].coefficients : 0;
+    int64_t w = 0, h = 0, order = -1;
+    *b = (struct basis){0};
+    json_read_integer(json_get(j, "width"), &w);
+    json_read_integer(json_get(j, "height"), &h);
+    json_read_integer(json_get(j, "order"), &order);
+    bool sound = false;
+    if (type && strcmp(type, "lights") == 0) {
+        b->lights = json_get(j, "lights");
+        sound = json_count(b->lights) == count;
+    } else if (type && strcmp(type, "sh") == 0) {
+        b->kind = HARMONICS;
+        sound = order >= 0 && order <= 10 && (order + 1) * (order + 1) == count;
+    } else if (type) {
+        b->kind = CELLS;
+        b->transformed = strcmp(type, "pixels") != 0;
+        b->wavelet = strcmp(type, "daub4") == 0 ? WAVELET_DAUB4 : WAVELET_HAAR;
+        sound = (strcmp(type, "pixels") == 0 || strcmp(type, "haar") == 0 ||
+                 strcmp(type, "daub4") == 0) &&
+                w > 0 && h > 0 && w <= 1 << 16 && h <= 1 << 16 && w * h == count &&
+                (!b->transformed || (wavelet_fits((size_t)w) && wavelet_fits((size_t)h)));
+    }
+    b->width = (int)w;
+    b->height = (int)h;
+    b->order = (int)order;
+    if (!sound)
+        log_error("%s: is not a tensor of `relume precompute relight`", path);
+    return sound;
+}
+
+// ---- environments -------------------------------------------------------------------------------
+
+// Means of the picture over cells, weighted by solid angle: out[channel][cell]. Column shares that
+// the rotation cuts are split.
+static void resample(const struct image *im, double rotate, int w, int h, double *out) {
+    const int fine = 4; // parts of a texel, each way
+    const double shift = rotate / 360;
+    double *weight = mem_array((size_t)w * (size_t)h, sizeof *weight);
+    for (int y = 0; y < im->height * fine; y++) {
+        const double area = latlong_solid_angle(y, im->width * fine, im->height * fine);
+        const int row = (int)((y + 0.5) / (im->height * fine) * h);
+        for (int x = 0; x < im->width * fine; x++) {
+            // The column grows from +z towards -x: turning towards +x moves it back.
+            double place = (x + 0.5) / (im->width * fine) - shift;
+            place -= floor(place);
+            const int column = (int)(place * w) < w ? (int)(place * w) : w - 1;
+            const float *p = im->pixels + 3 * ((size_t)(y / fine) * (size_t)im->width +
+                                               (size_t)(x / fine));
+            const size_t cell = (size_t)row * (size_t)w + (size_t)column;
+            for (size_t k = 0; k < 3; k++)
+                out[k * (size_t)w * (size_t)h + cell] += area * (double)p[k];
+            weight[cell] += area;
+        }
+    }
+    for (size_t i = 0; i < (size_t)w * (size_t)h; i++)
+        for (size_t k = 0; k < 3; k++)
+            out[k * (size_t)w * (size_t)h + i] /= weight[i] > 0 ? weight[i] : 1;
+    mem_free(weight);
+}
+
+static void harmonics_of(const struct image *im, double rotate, int order, float *weights) {
+    const int count = (order + 1) * (order + 1);
+    double *sum = mem_array((size_t)count * 3, sizeof *sum);
+    for (int y = 0; y < im->height; y++)
+        for (int x = 0; x < im->width; x++) {
+            double d[3], sh[MOST_SH];
+            const float *p = im->pixels + 3 * ((size_t)y * (size_t)im->width + (size_t)x);
+            latlong_direction(x + 0.5 - rotate / 360 * im->width, y + 0.5, im->width, im->height, d);
+            spherical_harmonics(d, order, sh);
+            for (int i = 0; i < count; i++)
+                for (int k = 0; k < 3; k++)
+                    sum[3 * i + k] += sh[i] * (double)p[k] *
+                                      latlong_solid_angle(y, im->width, im->height);
+        }
+    for (int i = 0; i < 3 * count; i++)
+        weights[i] = (float)sum[i];
+    mem_free(sum);
+}
+
+// ---- terms --------------------------------------------------------------------------------------
+
+struct ranked {
+    double size;
+    uint32_t index;
+};
+
+static int by_size(const void *a, const void *b) {
+    const struct ranked *x = a, *y = b;
+    if (x->size != y->size)
+        return x->size > y->size ? -1 : 1;
+    return x->index < y->index ? -1 : x->index > y->index;
+}
+
+// Keeps the largest terms (Ng, Ramamoorthi, Hanrahan 2003, unweighted selection).
+static void keep_largest(float *weights, uint32_t count, uint32_t keep) {
+    struct ranked *r = mem_array(count, sizeof *r);
+    for (uint32_t i = 0; i < count; i++) {
+        double size = 0;
+        for (uint32_t k = 0; k < 3; k++)
+            size += (double)weights[3 * i + k] * (double)weights[3 * i + k];
+        r[i] = (struct ranked){size, i};
+    }
+    qsort(r, count, sizeof *r, by_size);
+    for (uint32_t i = keep; i < count; i++)
+        memset(weights + 3 * (size_t)r[i].index, 0, 3 * sizeof *weights);
+    mem_free(r);
+}
+
+// ---- all ----------------------------------------------------------------------------------------
+
+static bool environment_weights(const struct basis *b, const struct relight_lighting *l,
+                                float *weights) {
+    struct image file, rgb;
+    if (!image_read(l->environment, &file))
+        return false;
+    const bool good = image_to_rgb(&file, &rgb);
+    image_finish(&file);
+    if (!good)
+        return false;
+    const size_t n = 3 * (size_t)rgb.width * (size_t)rgb.height;
+    for (size_t i = 0; i < n; i++) // as the renderer reads an environment
+        if (!(rgb.pixels[i] >= 0 && rgb.pixels[i] < INFINITY))
+            rgb.pixels[i] = 0;
+    if (b->kind == HARMONICS) {
+        harmonics_of(&rgb, l->rotate, b->order, weights);
+    } else {
+        const size_t count = (size_t)b->width * (size_t)b->height;
+        double *cells = mem_array(3 * count, sizeof *cells);
+        double *scratch = mem_array(2 * (size_t)(b->width + b->height), sizeof *scratch);
+        resample(&rgb, l->rotate, b->width, b->height, cells);
+        for (size_t k = 0; k < 3; k++) {
+            if (b->transformed)
+                wavelet_forward_matrix(b->wavelet, cells + k * count, (size_t)b->height,
+                                       (size_t)b->width, scratch);
+            for (size_t i = 0; i < count; i++)
+                weights[3 * i + k] = (float)cells[k * count + i];
+        }
+        mem_free(cells);
+        mem_free(scratch);
+    }
+    image_finish(&rgb);
+    return true;
+}
+
+// Applies "NAME=R,G,B" or "NAME=X".
+static bool scale_light(const struct basis *b, const char *text, float *weights) {
+    const char *equals = strchr(text, '=');
+    float rgb[3];
+    char rest;
+    const int n = equals ? sscanf(equals + 1, "%f,%f,%f%c", &rgb[0], &rgb[1], &rgb[2], &rest) : 0;
+    if (n == 1)
+        rgb[1] = rgb[2] = rgb[0];
+    if ((n != 1 && n != 3) || !(fabsf(rgb[0]) + fabsf(rgb[1]) + fabsf(rgb[2]) < INFINITY)) {
+        log_error("--light %s: expected NAME=R,G,B or NAME=FACTOR", text);
+        return false;
+    }
+    for (size_t i = 0; i < json_count(b->lights); i++) {
+        const char *name = json_text(json_at(b->lights, i));
+        if (!name || strlen(name) != (size_t)(equals - text) ||
+            strncmp(name, text, (size_t)(equals - text)) != 0)
+            continue;
+        for (size_t k = 0; k < 3; k++)
+            weights[3 * i + k] *= rgb[k];
+        return true;
+    }
+    log_error("--light %s: the tensor has no light of that name; relume info lists them", text);
+    return false;
+}
+
+bool relight_weights(const struct tensor *t, const char *path, const struct relight_lighting *l,
+                     float *weights) {
+    struct basis b;
+    if (!read_basis(t, path, &b))
+        return false;
+    const struct tensor_block *block = &t->blocks[0];
+    if (l->environment ? b.kind == LIGHTS : !block->weights) {
+        log_error("%s: its coefficients are %s", path, b.kind == LIGHTS
+                  ? "lights of the scene; --env needs --basis pixels, sh, haar or daub4"
+                  : "without the scene's own lighting; give --env");
+        return false;
+    }
+    if (l->light_count && b.kind != LIGHTS) {
+        log_error("%s: --light needs a tensor of --basis lights", path);
+        return false;
+    }
+    if (!l->environment)
+        memcpy(weights, block->weights, 3 * (size_t)block->coefficients * sizeof *weights);
+    else if (!environment_weights(&b, l, weights))
+        return false;
+    for (size_t i = 0; i < l->light_count; i++)
+        if (!scale_light(&b, l->lights[i], weights))
+            return false;
+    if (l->terms && l->terms < block->coefficients)
+        keep_largest(weights, block->coefficients, l->terms);
+    return true;
+}

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/replay.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "base/thread.h"
+#include "cl/compute.h"
+#include "kernels/tile.h"
+#include "replay/tiles.h"
+
+enum { ROW = TILE_CHANNELS * TILE_LANES };
+
+// Consecutive tiles of a block that one buffer of the device holds.
+struct chunk {
+    size_t first, tiles;
+    struct compute_buffer values;
+};
+
+struct replay_block {
+    const struct tensor_block *tensor;
+    float *sums; // [tile][channel][lane]
+    struct chunk *chunks;
+    size_t chunk_count;
+    bool dirty; // sums are on the device, not here
+    struct compute_buffer out, weights, terms;
+};
+
+struct replay {
+    const struct tensor *tensor;
+    struct compute_device *device; // NULL: twins
+    int threads;
+    char name[300];
+    struct replay_block *blocks;
+};
+
+static size_t tile_bytes(const struct tensor_block *b) {
+    return (size_t)b->coefficients * ROW * tensor_value_size(b->storage);
+}
+
+static const char *suffix(const struct tensor_block *b) {
+    return b->storage == TENSOR_BF16 ? "bf16" : "f32";
+}
+
+// ---- set up -------------------------------------------------------------------------------------
+
+static bool wrap_values(struct replay *r, struct replay_block *b) {
+    const size_t tiles = tensor_tiles(b->tensor), bytes = tile_bytes(b->tensor);
+    size_t most = compute_most_allocation(r->device) / bytes;
+    if (most == 0) {
+        log_error("%s cannot hold a tile of %zu bytes; go on without it (--no-device)",
+                  compute_name(r->device), bytes);
+        return false;
+    }
+    b->chunk_count = (tiles + most - 1) / most;
+    b->chunks = mem_array(b->chunk_count, sizeof *b->chunks);
+    for (size_t i = 0; i < b->chunk_count; i++) {
+        struct chunk *c = &b->chunks[i];
+        c->first = i * most;
+        c->tiles = tiles - c->first < most ? tiles - c->first : most;
+        c->values = compute_buffer_wrap(
+            r->device, (const char *)b->tensor->values + c->first * bytes, c->tiles * bytes);
+        if (!c->values.handle)
+            return false;
+    }
+    return true;
+}
+
+static bool prepare_block(struct replay *r, struct replay_block *b) {
+    const size_t tiles = tensor_tiles(b->tensor), weights = (size_t)b->tensor->coefficients * 3 * 4;
+    b->sums = mem_array(tiles * ROW, sizeof *b->sums);
+    if (!r->device || tiles == 0)
+        return true;
+    b->out = compute_buffer_create(r->device, tiles * ROW * sizeof *b->sums);
+    b->weights = compute_buffer_create(r->device, weights);
+    b->terms = compute_buffer_create(r->device, (size_t)b->tensor->coefficients * 4);
+    return b->out.handle && b->weights.handle && b->terms.handle && wrap_values(r, b);
+}
+
+struct replay *replay_create(const struct tensor *t, const struct replay_options *options) {
+    struct replay *r = mem_array(1, sizeof *r);
+    r->tensor = t;
+    r->threads = options->threads;
+    r->device = options->no_device ? NULL : compute_open();
+    if (r->device)
+        snprintf(r->name, sizeof r->name, "OpenCL, %s", compute_name(r->device));
+    else
+        snprintf(r->name, sizeof r->name, "C, %d threads",
+                 r->threads > 0 ? r->threads : thread_default_count());
+    r->blocks = mem_array(t->block_count, sizeof *r->blocks);
+    for (uint32_t i = 0; i < t->block_count; i++) {
+        r->blocks[i].tensor = &t->blocks[i];
+        if (!prepare_block(r, &r->blocks[i])) {
+            replay_destroy(r);
+            return NULL;
+        }
+    }
+    return r;
+}
+
+void replay_destroy(struct replay *r) {
+    if (!r)
+        return;
+    for (uint32_t i = 0; i < r->tensor->block_count; i++) {
+        struct replay_block *b = &r->blocks[i];
+        for (size_t k = 0; k < b->chunk_count; k++)
+            compute_buffer_destroy(&b->chunks[k].values);
+        compute_buffer_destroy(&b->out);
+        compute_buffer_destroy(&b->weights);
+        compute_buffer_destroy(&b->terms);
+        mem_free(b->chunks);
+        mem_free(b->sums);
+    }
+    compute_close(r->device);
+    mem_free(r->blocks);
+    mem_free(r);
+}
+
+const char *replay_device(const struct replay *r) {
+    return r->name;
+}
+
+// ---- products -----------------------------------------------------------------------------------
+
+// Runs a kernel over all chunks of a block; its arguments 0, out_at and out_at + 1 are set here.
+static bool run_chunks(struct replay *r, struct replay_block *b, const char *kernel,
+                       const struct compute_arg *args, uint32_t count, uint32_t out_at) {
+    char name[32];
+    struct compute_arg a[8];
+    snprintf(name, sizeof name, "%s_%s", kernel, suffix(b->tensor));
+    struct compute_kernel *k = compute_kernel(r->device, "dot", name);
+    if (!k)
+        return false;
+    memcpy(a, args, count * sizeof *a);
+    for (size_t i = 0; i < b->chunk_count; i++) {
+        const struct chunk *c = &b->chunks[i];
+        a[0] = COMPUTE_BUFFER(&c->values);
+        a[out_at] = COMPUTE_BUFFER(&b->out);
+        a[out_at + 1] = COMPUTE_UINT((uint32_t)c->first);
+        if (!compute_run(r->device, k, c->tiles, a, count))
+            return false;
+    }
+    b->dirty = true;
+    return true;
+}
+
+bool replay_product(struct replay *r, uint32_t block, const float *weights) {
+    struct replay_block *b = &r->blocks[block];
+    const struct tensor_block *t = b->tensor;
+    if (tensor_tiles(t) == 0)
+        return true;
+    if (!r->device) {
+        tiles_dot(t->values, t->storage, weights, t->coefficients, tensor_tiles(t), b->sums,
+                  r->threads);
+        return true;
+    }
+    const struct compute_arg args[] = {COMPUTE_BUFFER(NULL), COMPUTE_BUFFER(&b->weights),
+                                       COMPUTE_UINT(t->coefficients), COMPUTE_BUFFER(NULL),
+                                       COMPUTE_UINT(0)};
+    return compute_write(r->device, &b->weights, 0, weights, (size_t)t->coefficients * 3 * 4) &&
+           run_chunks(r, b, "dot", args, 5, 3);
+}
+
+bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, const float *weights,
+                   uint32_t count) {
+    struct replay_block *b = &r->blocks[block];
+    const struct tensor_block *t = b->tensor;
+    if (tensor_tiles(t) == 0 || count == 0)
+        return true;
+    if (!r->device) {
+        tiles_add_terms(t->values, t->storage, weights, terms, count, t->coefficients,
+                        tensor_tiles(t), b->sums, r->threads);
+        return true;
+    }
+    const struct compute_arg args[] = {
+        COMPUTE_BUFFER(NULL), COMPUTE_BUFFER(&b->weights), COMPUTE_BUFFER(&b->terms),
+        COMPUTE_UINT(count), COMPUTE_UINT(t->coefficients), COMPUTE_BUFFER(NULL), COMPUTE_UINT(0)};
+    return compute_write(r->device, &b->weights, 0, weights, (size_t)count * 3 * 4) &&
+           compute_write(r->device, &b->terms, 0, terms, (size_t)count * 4) &&
+           run_chunks(r, b, "add_terms", args, 7, 5);
+}
+
+bool replay_wait(struct replay *r) {
+    return !r->device || compute_wait(r->device);
+}
+
+static bool fetch(struct replay *r, struct replay_block *b) {
+    if (!b->dirty)
+        return true;
+    b->dirty = false;
+    return compute_read(r->device, &b->out, 0, b->sums,
+                        tensor_tiles(b->tensor) * ROW * sizeof *b->sums);
+}
+
+bool replay_frame(struct replay *r, const float *scale, float *frame) {
+    const struct tensor *t = r->tensor;
+    const uint32_t plane = t->width * t->height;
+    const float one[3] = {1, 1, 1};
+    if (t->fixed)
+        memcpy(frame, t->fixed, 3 * (size_t)plane * sizeof *frame);
+    else
+        memset(frame, 0, 3 * (size_t)plane * sizeof *frame);
+    for (uint32_t i = 0; i < t->block_count; i++) {
+        struct replay_block *b = &r->blocks[i];
+        if (!fetch(r, b))
+            return false;
+        tiles_compose(b->sums, b->tensor->pixels, (uint32_t)b->tensor->pixel_count,
+                      scale ? scale + 3 * (size_t)i : one, NULL, frame, plane, r->threads);
+    }
+    return true;
+}
+
+void replay_variance(struct replay *r, const float *const *weights, float *variance) {
+    const struct tensor *t = r->tensor;
+    const uint32_t plane = t->width * t->height;
+    const float one[3] = {1, 1, 1};
+    float *sum = mem_array(3 * (size_t)plane, sizeof *sum);
+    for (uint32_t i = 0; i < t->block_count; i++) {
+        const struct tensor_block *b = &t->blocks[i];
+        if (!b->halves)
+            continue;
+        float *out = mem_array(tensor_tiles(b) * ROW, sizeof *out);
+        tiles_dot(b->halves, b->storage, weights[i], b->coefficients, tensor_tiles(b), out,
+                  r->threads);
+        tiles_compose(out, b->pixels, (uint32_t)b->pixel_count, one, NULL, sum, plane, r->threads);
+        mem_free(out);
+    }
+    for (uint32_t i = 0; i < plane; i++) {
+        variance[i] = 0;
+        for (uint32_t c = 0; c < 3; c++) {
+            const float d = sum[(size_t)c * plane + i];
+            variance[i] += d * d / 3;
+        }
+    }
+    mem_free(sum);
+}

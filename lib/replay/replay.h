@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Replaying a tensor: pictures for given weights, at the speed of memory.
+//
+// Works on an OpenCL device where there is one, and on the C twins of its kernels otherwise, with the
+// same bits. Knows nothing of what the weights mean.
+#pragma once
+
+#include "transport/tensor.h"
+
+struct replay;
+
+struct replay_options {
+    bool no_device; // only the C twins
+    int threads;    // 0: default
+};
+
+// The tensor must outlive it. NULL after an error message.
+struct replay *replay_create(const struct tensor *t, const struct replay_options *options);
+void replay_destroy(struct replay *r); // NULL is fine
+const char *replay_device(const struct replay *r); // "C, 2 threads" without one
+
+// The block's sums for weights[coefficient][channel]. false after an error message (device lost).
+bool replay_product(struct replay *r, uint32_t block, const float *weights);
+// Adds weights of a few terms to the block's sums.
+bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, const float *weights,
+                   uint32_t count);
+// Waits until what was asked for is done.
+bool replay_wait(struct replay *r);
+// The picture: fixed + sum over blocks of their sums times `scale` (by block and channel; NULL: 1),
+// three planes of width * height.
+bool replay_frame(struct replay *r, const float *scale, float *frame);
+
+// The variance that the halves tell of for these weights (all blocks, one after the other), per
+// pixel: mean over channels of the squared half difference; zero where a block has no halves.
+void replay_variance(struct replay *r, const float *const *weights, float *variance);
