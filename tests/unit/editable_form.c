@@ -193,6 +193,40 @@ static double microfacet(const struct view *v, const struct model_parameters *p,
            (4 * projected(v->cos_i, p->exponent_u) * projected(v->cos_o, p->exponent_u));
 }
 
+// Curves from tables: 33 nodes, lines between them.
+enum { NODES = 33 };
+
+static double nodes[3][CURVE_CHANNELS][NODES]; // f_o, f_A, f_B
+
+static double line(int slot, int k, double gamma) {
+    const double x = gamma / (M_PI / 2) * (NODES - 1);
+    const int i = x < NODES - 1 ? (int)x : NODES - 2;
+    return nodes[slot][k][i] + (x - i) * (nodes[slot][k][i + 1] - nodes[slot][k][i]);
+}
+
+static double theta(const double w[3]) {
+    return atan2(hypot(w[0], w[1]), w[2]);
+}
+
+static double homomorphic(const struct view *v, const struct model_parameters *p, int k) {
+    (void)p;
+    return line(SLOT_B, k, theta(v->i)) * line(SLOT_B, k, theta(v->o)) *
+           line(SLOT_A, k, atan2(sqrt(v->sin2_h), v->cos_h));
+}
+
+static double halfdifference(const struct view *v, const struct model_parameters *p, int k) {
+    (void)p;
+    return line(SLOT_A, k, atan2(sqrt(v->sin2_h), v->cos_h)) *
+           line(SLOT_B, k, atan2(sqrt(1 - v->cos_d * v->cos_d), v->cos_d));
+}
+
+static double freehand(const struct view *v, const struct model_parameters *p, int k) {
+    const double u = v->i[0] + v->o[0], w = v->i[2] + v->o[2];
+    (void)p;
+    return line(SLOT_A, k, atan2(fabs(u), w)) * line(SLOT_O, k, theta(v->o)) *
+           line(SLOT_B, k, atan2(sqrt(v->y2), sqrt(v->x2))) / (v->cos_i * v->cos_o);
+}
+
 static double lambert(const struct view *v, const struct model_parameters *p, int k) {
     (void)v;
     (void)p;
@@ -206,20 +240,24 @@ struct subject {
     const struct model *model;
     closed_form f;
     int slower; // evaluate this many times fewer
+    int tables; // of the slots f_o, f_A and f_B: bits 0 to 2
 };
 
 static const struct subject subjects[] = {
-    {&model_phong, phong, 1},
-    {&model_blinnphong, blinnphong, 1},
-    {&model_cooktorrance, cooktorrance, 1},
-    {&model_ashikhminshirley, ashikhmin, 1},
-    {&model_ashikhminfresnel, ashikhmin, 1},
-    {&model_ashikhminratio, ashikhmin, 1},
-    {&model_ward, ward, 1},
-    {&model_schlick, schlick, 1},
-    {&model_orennayar, orennayar, 1},
-    {&model_lightview, lambert, 1},
-    {&model_microfacet, microfacet, 100},
+    {&model_phong, phong, 1, 0},
+    {&model_blinnphong, blinnphong, 1, 0},
+    {&model_cooktorrance, cooktorrance, 1, 0},
+    {&model_ashikhminshirley, ashikhmin, 1, 0},
+    {&model_ashikhminfresnel, ashikhmin, 1, 0},
+    {&model_ashikhminratio, ashikhmin, 1, 0},
+    {&model_ward, ward, 1, 0},
+    {&model_schlick, schlick, 1, 0},
+    {&model_orennayar, orennayar, 1, 0},
+    {&model_lightview, lambert, 1, 0},
+    {&model_microfacet, microfacet, 100, 0},
+    {&model_homomorphic, homomorphic, 1, 6},
+    {&model_halfdifference, halfdifference, 1, 6},
+    {&model_freehand, freehand, 1, 7},
 };
 
 enum { SUBJECTS = sizeof subjects / sizeof *subjects };
@@ -231,6 +269,10 @@ static struct model_parameters random_parameters(struct rng *r) {
     p.alpha_u = decades(r, 0.03, 1);
     p.alpha_v = uniform(r) < 0.3 ? p.alpha_u : decades(r, 0.03, 1);
     p.isotropy = between(r, 0.05, 1);
+    p.gamma[SLOT_O] = GAMMA_THETA_O;
+    p.gamma[SLOT_A] = GAMMA_SLOPE_U;
+    p.gamma[SLOT_B] = GAMMA_PHI_H;
+    p.quotient = QUOTIENT_WARD_DUER;
     p.variant = (int)between(r, 0, 2.999);
     p.literal = uniform(r) < 0.5;
     p.fixed_fresnel = uniform(r) < 0.5;
@@ -289,6 +331,15 @@ static void compare(const struct subject *s, const struct model_parameters *p,
     worst->in_float = fmax(worst->in_float, worst_of_channels(s, p, form, &v, true));
 }
 
+// The nodes of a slot, drawn anew, as a table.
+static void draw_table(int slot, struct rng *r, struct arena *arena, struct curve *c) {
+    const struct basis b = basis_make(arena, BASIS_HAT, NODES, SPACING_UNIFORM);
+    *c = curve_make(arena, &b, CURVE_CHANNELS);
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        for (int i = 0; i < NODES; i++)
+            c->values[k * NODES + i] = nodes[slot][k][i] = between(r, 0.1, 2);
+}
+
 static void form_equals_the_closed_form(const struct subject *s) {
     const int full = getenv("RELUME_TEST_FULL") ? 10 : 1;
     const int sets = 500 * full / s->slower, views = 100;
@@ -298,6 +349,12 @@ static void form_equals_the_closed_form(const struct subject *s) {
         struct arena arena = {0};
         struct form form;
         struct model_parameters p = random_parameters(&rng);
+        struct curve tables[SLOTS];
+        for (int k = 0; k < SLOTS; k++)
+            if (s->tables >> k & 1) {
+                draw_table(k, &rng, &arena, &tables[k]);
+                p.curve[k] = &tables[k];
+            }
         CHECK(model_make(s->model, &p, &arena, &form, "test"));
         for (int j = 0; j < views; j++)
             compare(s, &p, &form, &rng, &worst);
