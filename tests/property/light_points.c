@@ -125,6 +125,45 @@ static void check_area(const struct shape *shape) {
     light_type_of(o)->finish(o->data);
 }
 
+// ---- lights of several parts
+
+// A part's samples have the density that is said of them, and the parts together give what the whole
+// gives: the mean of emission / pdf, 5 standard errors (false alarm 6e-7 each).
+static void check_parts(void) {
+    enum { SAMPLES = 40000, PLACES = 4 };
+    const vec3 places[PLACES] = {v3(2, 1.5f, 3), v3(0, 1.2f, 0.3f), v3(-4, 0, 0), v3(30, 20, 10)};
+    struct shape shape = {.name = "cube"};
+    struct rng rng = {21};
+    mesh_make_cube(&shape.mesh);
+    struct object *o = make_light("area", "radiance=2", &shape);
+    const struct light_type *type = light_type_of(o);
+    const uint32_t parts = type->parts(o->data);
+    CHECK(parts == shape.mesh.triangle_count);
+    for (int k = 0; k < PLACES; k++) {
+        double sum[2] = {0, 0}, sum2[2] = {0, 0};
+        for (int i = 0; i < SAMPLES; i++) {
+            const struct vec2 u = {rng_float(&rng), rng_float(&rng)};
+            const uint32_t part = rng_u32(&rng) % parts;
+            struct light_sample s[2] = {{.pdf_sa = 0}, {.pdf_sa = 0}};
+            const bool found[2] = {type->sample(o->data, places[k], u, &s[0]),
+                                   type->part_sample(o->data, part, places[k], u, &s[1])};
+            for (int j = 0; j < 2; j++) {
+                const double pdf = (double)s[j].pdf_sa / (j ? parts : 1);
+                const double w = found[j] ? (double)spectrum_luminance(s[j].emission) / pdf : 0;
+                sum[j] += w / SAMPLES;
+                sum2[j] += w * w / SAMPLES;
+            }
+            const struct light_hit hit = {s[1].wi, s[1].distance, s[1].n, {.triangle = part}};
+            if (found[1])
+                CHECK_NEAR(type->part_pdf_sa(o->data, places[k], &hit) / s[1].pdf_sa, 1, 1e-4);
+        }
+        const double variance = sum2[0] - sum[0] * sum[0] + sum2[1] - sum[1] * sum[1];
+        CHECK_NEAR(sum[1], sum[0], 5 * sqrt(variance / SAMPLES));
+    }
+    type->finish(o->data);
+    mesh_finish(&shape.mesh);
+}
+
 static void check_points(void) {
     char overrides[128];
     write_profile();
@@ -169,6 +208,7 @@ static void check_points(void) {
 int main(void) {
     check_delta();
     check_points();
+    check_parts();
     arena_finish(&arena);
     return check_result();
 }
