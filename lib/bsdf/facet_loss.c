@@ -8,11 +8,15 @@
 // alpha / (1 + alpha).
 enum { COSINES = 128, AZIMUTHS = 32, ALPHAS = 40 };
 
-// Nodes of E's quadrature. Facets that reflect below the horizon leave kinks in it: with 96 the GGX
-// albedo is right to 3e-4, with 48 to 1.5e-3.
-enum { NODES = 96, NODES_OF_MANY = 48 };
+enum { NODES = 96, NODES_OF_MANY = 48 }; // of E's quadrature, in each dimension
 
 const char *const energy_choices[] = {"single", "compensated", NULL};
+
+double facet_albedo_error(int nodes, bool critical) {
+    if (nodes >= NODES)
+        return critical ? 2.7e-3 : 3e-4;
+    return critical ? 1.1e-2 : 1.5e-3;
+}
 
 static vec3 direction(int azimuth, int azimuths, int cosine) {
     const float s = (float)cosine / COSINES, mu = maxf(s * s, 1e-6f);
@@ -37,14 +41,13 @@ static void fill(struct facet_loss *loss, int k, float alpha_u, float alpha_v,
                  facet_albedo_fn albedo, const void *context) {
     const bool many = loss->alphas > 1 || loss->azimuths > 1;
     const int nodes = many ? NODES_OF_MANY : NODES;
-    const double error = many ? 1.5e-3 : 1e-3;
     const int turns = loss->azimuths > 1 ? loss->azimuths - 1 : 1;
     double cell[COSINES] = {0}, sum = 0;
     for (int j = 0; j < loss->azimuths; j++) {
         float *row = loss->lost + (size_t)(k * loss->azimuths + j) * (COSINES + 1);
         for (int i = 0; i <= COSINES; i++) {
             const vec3 v = direction(j, loss->azimuths, i);
-            row[i] = clampf((float)(1 - error - albedo(context, alpha_u, alpha_v, v, nodes)), 0, 1);
+            row[i] = clampf((float)(1 - albedo(context, alpha_u, alpha_v, v, nodes)), 0, 1);
         }
         const bool end = j == 0 || j == loss->azimuths - 1;
         add_cells(cell, row, (loss->azimuths > 1 && end ? 0.5 : 1) / turns);

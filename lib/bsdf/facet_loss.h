@@ -8,16 +8,15 @@
 // has the albedo lost(wo) and is reciprocal. `mean` is that of the table as it is interpolated, so
 // what is given back is lost as the table has it, to rounding.
 //
-// For any model of facets: it says what E is. Directions are local, on the upper side. The table is
-// lowered by what the quadrature of E may err by, 0.001 to 0.0015, so that no energy is created.
+// For any model of facets: it says what E is. Directions are local, on the upper side.
 #pragma once
 
 #include "base/mem.h"
 #include "base/registry.h"
 #include "math/vec.h"
 
-// E of the lossless surface with these roughnesses; where that takes quadrature, so many nodes in
-// either dimension suffice for the table.
+// E of the lossless surface with these roughnesses. Where that takes quadrature, so many nodes in
+// either dimension suffice, and its error is added, so that no energy is created.
 typedef double (*facet_albedo_fn)(const void *context, float alpha_u, float alpha_v, vec3 v,
                                   int nodes);
 
@@ -36,6 +35,10 @@ struct facet_loss_at {
     float mean;
     int azimuths;
 };
+
+// What the quadratures of math/microfacet.h may err by, with so many nodes of a table; `critical`:
+// below the critical angle facets begin to refract, which leaves a kink (measured, GGX).
+double facet_albedo_error(int nodes, bool critical);
 
 // Of one roughness.
 void facet_loss_make(struct facet_loss *loss, float alpha_u, float alpha_v, facet_albedo_fn albedo,

@@ -43,7 +43,7 @@ static double mirror_albedo(const void *context, float alpha_u, float alpha_v, v
                             int nodes) {
     const enum microfacet_type *type = context;
     const struct microfacet m = microfacet_make(*type, alpha_u, alpha_v);
-    return microfacet_albedo_mirror(&m, v, nodes);
+    return microfacet_albedo_mirror(&m, v, nodes) + facet_albedo_error(nodes, false);
 }
 
 // 2 * integral of F(c) c dc

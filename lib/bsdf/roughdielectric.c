@@ -52,7 +52,7 @@ static double boundary_albedo(const void *context, float alpha_u, float alpha_v,
     const struct microfacet m = microfacet_make(b->type, alpha_u, alpha_v);
     double reflected, transmitted;
     microfacet_albedo_from(&m, b->eta, v, nodes, &reflected, &transmitted);
-    return reflected + transmitted;
+    return reflected + transmitted + facet_albedo_error(nodes, b->eta < 1);
 }
 
 static bool prepare(struct object *self, struct arena *arena) {

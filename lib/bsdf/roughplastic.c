@@ -129,7 +129,7 @@ static double coat_albedo(const void *context, float alpha_u, float alpha_v, vec
     const struct microfacet m = microfacet_make(side->self->facets.type, alpha_u, alpha_v);
     double reflected, transmitted;
     microfacet_albedo_from(&m, side->eta, v, nodes, &reflected, &transmitted);
-    return reflected + transmitted;
+    return reflected + transmitted + facet_albedo_error(nodes, side->eta < 1);
 }
 
 // Adds to T its share of what is lost, and finds what remains inside from what leaves: transmission

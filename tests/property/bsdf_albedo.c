@@ -86,7 +86,7 @@ static struct albedos measure_white(const struct white *w) {
     const struct albedos a = measure(o);
     CHECK(a.accuracy < 5e-3);
     if (bsdf_type_of(o)->claims & CLAIM_ENERGY)
-        CHECK(a.high <= 1 + 1e-3);
+        CHECK(a.high <= 1 + 5e-4);
     arena_finish(&arena);
     return a;
 }
@@ -173,7 +173,7 @@ static void print_furnace(void) {
             const double after =
                 furnace(rough[k / 2], distribution, alphas[i], "compensated", &noise);
             printf(" %+.3f %+.5f |", before, after);
-            CHECK(fabs(after) < 2e-3);
+            CHECK(after < 5e-4 && after > (strstr(rough[k / 2], "dielectric") ? -6e-3 : -1e-3));
         }
         printf("\n");
     }
