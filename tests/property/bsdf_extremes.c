@@ -2,6 +2,7 @@
 // Every material at its extremes: directions to 89.9999 degrees and on the horizon, random numbers
 // at the ends of their range, roughness across the switch to smooth, indices of refraction near 1.
 // Everything stays finite and non-negative, and what a parameter's limit means is what comes out.
+// Arguments are names of materials, to try those alone; what is about one material is then left out.
 #include <stdio.h>
 
 #include "check.h"
@@ -80,6 +81,118 @@ static void everything_stays_finite(int argc, char **argv) {
             arena_finish(&arena);
         }
     }
+}
+
+// ---- every parameter at its ends --------------------------------------------------------------
+
+static const char *const roughnesses[] = {"1e-6", "1e-5", "1e-4", "1e-3", "0.03", "1", NULL};
+static const char *const exponents[] = {"1e-3", "1", "1e3", "1e7", NULL};
+static const char *const indices[] = {"1", "1.0000001", "0.9999999", "1.5", "100", "0.01", NULL};
+static const char *const complex_indices[] = {"0", "1", "1.0000001", "1e3", NULL};
+static const char *const shares[] = {"0", "1e-6", "0.999999", "1", NULL};
+
+static bool is_called(const struct param *p, const char *part) {
+    return strstr(p->name, part) != NULL;
+}
+
+// Values to try, by kind; NULL: none.
+static const char *const *ends_of(const struct param *p) {
+    const bool number = p->type == PARAM_FLOAT || p->type == PARAM_TEXTURE_SCALAR;
+    if (number && (is_called(p, "alpha") || is_called(p, "roughness")))
+        return roughnesses;
+    if (number && is_called(p, "exponent"))
+        return exponents;
+    if (p->type == PARAM_IOR || (number && strcmp(p->name, "eta") == 0))
+        return indices;
+    if (p->type == PARAM_INDEX)
+        return complex_indices;
+    if ((number && p->max > p->min) || p->type == PARAM_TEXTURE || p->type == PARAM_REFLECTANCE)
+        return shares;
+    return NULL;
+}
+
+static bool is_allowed(const struct param *p, const char *value) {
+    const double v = atof(value);
+    return (p->min == 0 && p->max == 0) || (v >= p->min && v <= p->max);
+}
+
+// "alpha_u" and "alpha_v" may be refused without each other: whichever it is, both are set.
+static const char *set_text(struct arena *arena, const struct entry *e, const struct param *p,
+                            const char *value) {
+    const size_t n = strlen(p->name);
+    char *partner = arena_strdup(arena, p->name);
+    if (n > 2 && p->name[n - 2] == '_') {
+        partner[n - 1] = p->name[n - 1] == 'u' ? 'v' : 'u';
+        if (param_find(e, partner))
+            return arena_printf(arena, "%s=%s %s=%s", p->name, value, partner, value);
+    }
+    return arena_printf(arena, "%s=%s", p->name, value);
+}
+
+// Where no energy may be created, the mean weight is at most 1 but for its noise (5 standard errors:
+// 3e-7 false alarms each).
+static void check_energy(const struct object *o, vec3 wo) {
+    enum { N = 1000 };
+    static struct closure_stack stack;
+    const struct bsdf_point point = bsdf_case_point();
+    struct rng rng = {17};
+    double sum = 0, sum2 = 0;
+    stack.used = 0;
+    const struct closure *c = bsdf_resolve(o, &point, wo, &stack);
+    for (int i = 0; c && i < N; i++) {
+        struct bsdf_sample s;
+        const float u1 = rng_float(&rng), u = rng_float(&rng), v = rng_float(&rng);
+        if (!closure_sample(c, u1, (struct vec2){u, v}, &s))
+            continue;
+        const double x = (double)(spectrum_mean(s.weight) * sqr(s.eta));
+        sum += x;
+        sum2 += x * x;
+    }
+    const double mean = sum / N, error = sqrt(fmax(sum2 / N - mean * mean, 0) / N);
+    CHECK(mean <= 1 + 5e-4 + 5 * error);
+}
+
+static void try_set(struct arena *arena, const struct bsdf_case *base, const char *more) {
+    struct bsdf_case c = *base;
+    c.overrides = arena_printf(arena, "%s %s", base->overrides, more);
+    const struct object *o = bsdf_case_make(arena, &c);
+    const bool bounded = bsdf_type_of(o)->claims & CLAIM_ENERGY && !c.children[0] && !c.waived;
+    const int before = check_failures;
+    for (int k = 0; k < 2 * HEIGHTS; k++) {
+        const vec3 wo = direction(heights[k / 2], 1.1f * (float)k, k % 2 ? -1 : 1);
+        check_direction(o, wo);
+        if (bounded)
+            check_energy(o, wo);
+    }
+    if (check_failures > before) {
+        printf("in ");
+        bsdf_case_print(&c);
+        printf("\n");
+    }
+}
+
+// The first row of each material with each parameter in turn at each of its ends.
+static int every_parameter_at_its_ends(int argc, char **argv) {
+    int sets = 0;
+    for (int row = 0; row < BSDF_ROWS; row++) {
+        const char *name = bsdf_rows[row].name;
+        const struct entry *e = registry_find(&bsdfs, name);
+        const bool first = row == 0 || strcmp(bsdf_rows[row - 1].name, name) != 0;
+        if (!first || !bsdf_is_asked(argc, argv, name))
+            continue;
+        for (const struct param *p = e->params; p && p->name; p++) {
+            for (const char *const *v = ends_of(p); v && *v; v++) {
+                struct arena arena = {0};
+                const struct bsdf_case base = bsdf_case_at(&arena, row, 0);
+                if (is_allowed(p, *v)) {
+                    try_set(&arena, &base, set_text(&arena, e, p, *v));
+                    sets++;
+                }
+                arena_finish(&arena);
+            }
+        }
+    }
+    return sets;
 }
 
 // ---- the switch to smooth -------------------------------------------------------------------
@@ -207,8 +320,57 @@ static void nearly_equal_indices_leave_almost_nothing(void) {
     }
 }
 
+// ---- large indices --------------------------------------------------------------------------
+
+// Reflectance of the facet at the normal, from the smooth material or a rough one of the same index.
+static double reflectance_at_normal(const char *name, const char *overrides) {
+    struct arena arena = {0};
+    static struct closure_stack stack;
+    const struct bsdf_point point = bsdf_case_point();
+    struct bsdf_sample s;
+    stack.used = 0;
+    const struct object *o = make_bsdf(&arena, name, overrides, NULL);
+    const struct closure *c = bsdf_resolve(o, &point, v3(0, 0, 1), &stack);
+    const bool hit = c && closure_sample(c, 0, (struct vec2){0.5f, 0}, &s);
+    CHECK(hit && s.lobe & LOBE_REFLECTION);
+    const double value = hit ? (double)(spectrum_mean(s.weight) * s.pdf_sa) : 0;
+    arena_finish(&arena);
+    return value;
+}
+
+static void large_indices_follow_fresnel(void) {
+    const double dielectric = 999.0 / 1001 * 999.0 / 1001, metal = 1e6 / (4 + 1e6);
+    CHECK_NEAR(reflectance_at_normal("dielectric", "int_ior=100 ext_ior=0.1"), dielectric, 1e-6);
+    CHECK_NEAR(reflectance_at_normal("conductor", "eta=1 k=1e3"), metal, 1e-6);
+    CHECK_NEAR(reflectance_at_normal("conductor", "eta=1e3 k=0"), dielectric, 1e-6);
+}
+
+// Value of a material for light and eye 30 degrees from the normal in one plane.
+static spectrum value_near_mirror(const char *name, const char *overrides) {
+    struct arena arena = {0};
+    static struct closure_stack stack;
+    const struct bsdf_point point = bsdf_case_point();
+    float pdf;
+    stack.used = 0;
+    const struct object *o = make_bsdf(&arena, name, overrides, NULL);
+    const struct closure *c = bsdf_resolve(o, &point, v3(0.5f, 0, sqrtf(0.75f)), &stack);
+    const spectrum f = closure_eval(c, v3(-0.5f, 0, sqrtf(0.75f)), &pdf);
+    arena_finish(&arena);
+    return f;
+}
+
+// The metal of principled does not depend on the index of its dielectric part, at 1 neither.
+static void principled_metal_stays_at_index_one(void) {
+    const spectrum none = value_near_mirror("principled", "metallic=1 specular=0");
+    const spectrum some = value_near_mirror("principled", "metallic=1 specular=1e-6");
+    CHECK(spectrum_min(none) > 0.1f);
+    CHECK_NEAR(spectrum_max(none), spectrum_max(some), 1e-5);
+}
+
 int main(int argc, char **argv) {
     everything_stays_finite(argc, argv);
+    printf("%d sets with a parameter at one of its ends\n",
+           every_parameter_at_its_ends(argc, argv));
     if (argc > 1)
         return check_result(); // named materials only
     roughness_meets_smooth("roughconductor", "eta=0.2 k=3.9");
@@ -216,6 +378,8 @@ int main(int argc, char **argv) {
     roughness_meets_smooth("roughplastic", "");
     zero_roughness_is_smooth();
     equal_indices_leave_nothing();
+    large_indices_follow_fresnel();
+    principled_metal_stays_at_index_one();
     nearly_equal_indices_leave_almost_nothing();
     return check_result();
 }
