@@ -41,8 +41,8 @@ static vec3 world_normal(const struct area_quadric *q, vec3 n) {
     return q->flip ? -w : w;
 }
 
-static bool keeps_angles(const struct affine *m) {
-    const float l = length(m->x), tolerance = 1e-5f;
+static bool keeps_angles(const struct affine *m, float tolerance) {
+    const float l = length(m->x);
     return fabsf(length(m->y) - l) <= tolerance * l && fabsf(length(m->z) - l) <= tolerance * l &&
            fabsf(dot(m->x, m->y)) <= tolerance * l * l &&
            fabsf(dot(m->y, m->z)) <= tolerance * l * l &&
@@ -69,7 +69,8 @@ bool area_quadric_init(struct area_quadric *q, const struct shape *shape) {
     *q = (struct area_quadric){.kind = shape->kind, .flip = shape->flip_normals,
                                .to_world = affine_from(&shape->to_world),
                                .to_object = affine_from(&inverse)};
-    q->uniform = keeps_angles(&q->to_world) || q->kind == SHAPE_DISK;
+    q->round = q->kind == SHAPE_SPHERE && keeps_angles(&q->to_world, 3e-7f);
+    q->uniform = keeps_angles(&q->to_world, 1e-5f) || q->kind == SHAPE_DISK;
     q->jacobian = area_element(&q->to_world, q->kind == SHAPE_DISK ? v3(0, 0, 1) : v3(1, 0, 0));
     q->area = world_area(q);
     q->centre = q->to_world.o;
@@ -164,6 +165,13 @@ static vec3 seen_point(vec3 axis, float sin2_max, struct vec2 u) {
 
 static void place_on_sphere(const struct area_quadric *q, vec3 outwards, struct light_sample *s,
                             struct texture_point *at) {
+    if (q->round && !at) {
+        const vec3 from_centre = q->radius * outwards;
+        s->p = q->centre + from_centre;
+        s->p_error = 4 * 0x1p-23f * (absolute(from_centre) + absolute(q->centre));
+        s->n = q->flip ? -outwards : outwards;
+        return;
+    }
     const vec3 object = normalize(affine_vector(&q->to_object, outwards));
     place(q, object, s, at);
 }
@@ -189,7 +197,7 @@ static bool sample_sphere(const struct area_quadric *q, vec3 p, struct vec2 u,
     s->pdf_sa = 1 / (4 * PI);
     if (!(s->distance > 0) || discriminant < 0)
         return false;
-    place_on_sphere(q, o + s->distance * s->wi, s, at);
+    place_on_sphere(q, normalize(o + s->distance * s->wi), s, at);
     return true;
 }
 

@@ -58,6 +58,7 @@ struct area_quadric {
     enum shape_kind kind;
     bool flip;
     bool uniform;        // the transform keeps angles: the area element is constant
+    bool round;          // a sphere in the world, to the rounding of float
     struct affine to_world, to_object;
     float jacobian;      // world area per object area, where it is constant
     float area;
