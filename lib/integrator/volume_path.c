@@ -181,14 +181,22 @@ static void add_glow(struct walker *w) {
                                     w->from.lobe, w->ray.d});
 }
 
-// Flies to the next surface, if a scattering event does not come first: then it is handled.
-static bool fly(struct walker *w, const struct medium *m, float distance) {
-    // A point that rounding can put onto the other side of the surface counts as having reached it.
-    const float slack = 0x1p-21f * (largest(w->ray.o) + (distance < INFINITY ? distance : 0));
+// A point that rounding can put onto the other side of a surface at that distance counts as having
+// reached it.
+static float slack(const struct walker *w, float distance) {
+    return 0x1p-21f * (largest(w->ray.o) + (distance < INFINITY ? distance : 0));
+}
+
+// Flies to the next surface, if a scattering event does not come first: then it is handled. t: the
+// free path in a plain medium.
+static bool fly(struct walker *w, const struct medium *m, float distance, float t) {
     const vec3 o = w->ray.o;
-    float t;
-    const bool scatters = medium_fly(m, o, w->ray.d, maxf(distance - slack, 0),
-                                     sampler_1d(draw(w, DRAW_DISTANCE)), &w->flight, &t);
+    const float end = maxf(distance - slack(w, distance), 0);
+    bool scatters = t < end;
+    if (!m->plain)
+        scatters = medium_fly(m, o, w->ray.d, end, sampler_1d(draw(w, DRAW_DISTANCE)), &w->flight, &t);
+    else if (scatters)
+        medium_scatter(m, &w->flight);
     if (m->emits)
         add_glow(w);
     w->alive = !spectrum_is_black(w->flight.beta);
@@ -279,11 +287,16 @@ static void shade(struct walker *w, const struct accel_hit *hit) {
 static void step(struct walker *w) {
     const struct medium *m = medium_of(w, w->medium);
     struct accel_hit hit;
+    float t = INFINITY;
     w->ctx->rays++;
-    const bool found = accel_intersect(w->ctx->world->accel, &w->ray, &hit);
     w->rng.state = hash_u64(((uint64_t)w->sampler.seed << 32 | w->sampler.index) ^
                             hash_u64(w->events));
-    if (m && fly(w, m, found ? hit.t : INFINITY))
+    if (m && m->plain) {
+        t = medium_free_path(m, sampler_1d(draw(w, DRAW_DISTANCE)), &w->rng);
+        w->ray.tmax = t + 2 * slack(w, t);
+    }
+    const bool found = accel_intersect(w->ctx->world->accel, &w->ray, &hit);
+    if (m && fly(w, m, found ? hit.t : INFINITY, t))
         return;
     if (!w->alive)
         return;

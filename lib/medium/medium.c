@@ -14,7 +14,10 @@ const struct registry media = {"medium", entries};
 
 bool medium_prepare(struct object *self, struct arena *arena, struct medium *m) {
     *m = (struct medium){.type = medium_type_of(self), .data = self->data};
-    return m->type->prepare(self, arena, m);
+    if (!m->type->prepare(self, arena, m))
+        return false;
+    m->plain = m->homogeneous && m->grey && m->scatters && !m->emits;
+    return true;
 }
 
 void medium_init(struct medium *m, const struct medium_common *common, float mean_cosine,

@@ -24,6 +24,7 @@ struct medium {
     bool homogeneous;     // `constant` holds everywhere
     bool scatters, emits; // anywhere
     bool grey;            // every lane has the same extinction
+    bool plain;           // homogeneous, grey, scattering and dark: every collision scatters
     bool sample_emitters; // next event estimation from points inside
     struct medium_point constant;
     float scale;          // of bounds

@@ -171,6 +171,14 @@ bool medium_fly(const struct medium *m, vec3 o, vec3 d, float end, float u, stru
     return fly_spectral(m, o, d, end, u, f, t);
 }
 
+float medium_free_path(const struct medium *m, float u, struct rng *rng) {
+    return exponential(u, rng) / m->constant.sigma_t[0];
+}
+
+void medium_scatter(const struct medium *m, struct flight *f) {
+    f->beta *= m->constant.sigma_s / m->constant.sigma_t[0];
+}
+
 spectrum medium_transmittance(const struct medium *m, vec3 o, vec3 d, float end, struct rng *rng) {
     const float speed = length(d);
     if (m->homogeneous)

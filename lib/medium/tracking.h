@@ -34,6 +34,11 @@ static inline float flight_ratio(spectrum ratio) {
 bool medium_fly(const struct medium *m, vec3 o, vec3 d, float end, float u, struct flight *f,
                 float *t);
 
+// How far a flight through a plain medium is without surfaces: rays need not look farther. It then
+// takes medium_scatter where it is not cut short. The same as medium_fly for the same numbers.
+float medium_free_path(const struct medium *m, float u, struct rng *rng);
+void medium_scatter(const struct medium *m, struct flight *f);
+
 // Transmittance along o + t d, t in (0, end), d of any length: exact where homogeneous, else by
 // ratio tracking, unbiased and at most 1.
 spectrum medium_transmittance(const struct medium *m, vec3 o, vec3 d, float end, struct rng *rng);
