@@ -5,7 +5,7 @@
 #include "math/fresnel.h"
 
 // Cosines are equally spaced in their square roots, azimuths over a quarter turn, roughnesses in
-// alpha / (1 + alpha).
+// sqrt(alpha / (1 + alpha)).
 enum { COSINES = 128, AZIMUTHS = 32, ALPHAS = 40 };
 
 enum { NODES = 96, NODES_OF_MANY = 48 }; // of E's quadrature, in each dimension
@@ -81,14 +81,14 @@ void facet_loss_make_all(struct facet_loss *loss, facet_albedo_fn albedo, const 
                          struct arena *arena) {
     allocate(loss, ALPHAS + 1, 1, arena);
     for (int i = 0; i <= ALPHAS; i++) {
-        const float t = (float)i / ALPHAS, alpha = i < ALPHAS ? t / (1 - t) : 1000;
+        const float t = (float)i / ALPHAS, alpha = i < ALPHAS ? t * t / (1 - t * t) : 1000;
         fill(loss, i, alpha, alpha, albedo, context);
     }
 }
 
 struct facet_loss_at facet_loss_at(const struct facet_loss *loss, float alpha) {
     const size_t size = (size_t)loss->azimuths * (COSINES + 1);
-    const float x = loss->alphas > 1 ? alpha / (1 + alpha) * ALPHAS : 0;
+    const float x = loss->alphas > 1 ? sqrtf(alpha / (1 + alpha)) * ALPHAS : 0;
     const int i = (int)minf(x, ALPHAS - 1), next = loss->alphas > 1 ? i + 1 : i;
     const float weight = x - (float)i;
     return (struct facet_loss_at){
