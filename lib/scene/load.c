@@ -245,8 +245,10 @@ static struct xml_node *load_file(struct reader *r, const char *path,
         log_error("%s: includes more than %d files", r->scene->path, MOST_FILES);
         return NULL;
     }
-    size_t size;
-    char *data = file_read(path, XML_MOST_BYTES, &size);
+    const char *text = includer ? NULL : r->options->text;
+    size_t size = text ? strlen(text) : 0;
+    char *data = text ? memcpy(mem_array(size + 1, 1), text, size)
+                      : file_read(path, XML_MOST_BYTES, &size);
     if (!data)
         return NULL;
     r->scene->hash = file_hash(data, size, r->scene->hash);

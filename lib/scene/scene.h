@@ -103,6 +103,7 @@ struct scene_define {
 };
 
 struct scene_options {
+    const char *text;       // the scene itself, read instead of the file of that name; or NULL
     struct scene_registries registries;
     const struct scene_define *defines;
     size_t define_count;
