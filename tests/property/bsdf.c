@@ -241,7 +241,8 @@ static void add_side(struct run *r, struct side *side, int fineness, struct chi2
             const double w = 2 * M_PI / SECTORS;
             const int panels = fineness * (side->edges[i + 1] < 0.1 ? 1 : wide_panels);
             const struct pair p = cubature_panels(density, r, side->edges[i], side->edges[i + 1],
-                                                  j * w, (j + 1) * w, panels, 0.6 / samples);
+                                                  j * w, (j + 1) * w, panels,
+                                                  (r->c->steps ? 6 : 0.6) / samples);
             chi2_add(bins, side->count[i][j], p.a * samples);
             total->a += p.a;
             total->b += p.b;
@@ -256,7 +257,8 @@ struct verdict {
 };
 
 static struct verdict judge(struct run *r, int fineness) {
-    struct chi2_bins bins = {.slack = 2e-5 * samples}; // slivers that cubature misses
+    // what cubature misses
+    struct chi2_bins bins = {.slack = (r->c->steps ? 2e-4 : 2e-5) * samples};
     struct pair total = {0, 0};
     for (int i = 0; i < 2; i++)
         add_side(r, &r->sides[i], fineness, &bins, &total);
@@ -269,7 +271,7 @@ static struct verdict judge(struct run *r, int fineness) {
     chi2_add(&bins, r->failures, fmax(1 - total.a, 0) * samples);
     const double mean = r->sum / samples;
     const double variance = fmax(r->sum2 / samples - mean * mean, 0) / samples;
-    const double floor = 4e-4; // of the cubature
+    const double floor = r->c->steps ? 2e-3 : 4e-4; // of the cubature
     const double p_chi2 = chi2_finish(&bins);
     return (struct verdict){p_chi2,
                             normal_p_value((mean - total.b) / sqrt(variance + floor * floor)),

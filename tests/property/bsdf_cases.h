@@ -14,6 +14,10 @@
 #include "make_object.h"
 #include "math/hash.h"
 
+#ifndef BSDF_FILES
+#define BSDF_FILES "." // where the files of measured materials are
+#endif
+
 struct bsdf_case {
     const char *name;
     const char *overrides;
@@ -21,6 +25,7 @@ struct bsdf_case {
     float eta;               // index inside over outside where light crosses; 0: not checked
     float tolerance;         // relative, of pdf and weight between sample and eval; 0: 2e-3
     int draws;               // 0: the row is one set as it stands
+    bool steps;              // densities of tables jump: cubature takes them less exactly
     uint32_t waived;         // claims that these parameters give up, as the material's help says
 };
 
@@ -28,6 +33,7 @@ static const struct bsdf_case bsdf_rows[] = {
 #include "property/bsdf_cases_classic.inc"
 #include "property/bsdf_cases_standard.inc"
 #include "property/bsdf_cases_editable.inc"
+#include "property/bsdf_cases_measured.inc"
 #include "property/bsdf_cases_principled.inc"
 };
 
