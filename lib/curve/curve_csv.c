@@ -10,6 +10,7 @@
 #include "curve/curve.h"
 
 static const double DEGREES = 90 / CURVE_END;
+static const double NARROWEST = 1e-9; // degrees between knots
 
 // ---- reading --------------------------------------------------------------------------------
 
@@ -111,12 +112,12 @@ static bool read_row(struct table *t) {
 // Bins follow each other, nodes ascend.
 static bool check_order(struct table *t) {
     const double *row = t->rows[t->count - 1], *before = t->count > 1 ? row - COLUMNS : NULL;
-    const double start = t->boxes && before ? before[1] : 0;
-    const bool follows = t->boxes || !before ? row[0] == start : row[0] > before[0];
-    if (follows && (!t->boxes || row[1] > row[0]))
+    const double last = before ? before[t->places - 1] : 0;
+    const bool follows = t->boxes || !before ? row[0] == last : row[0] - last >= NARROWEST;
+    if (follows && (!t->boxes || row[1] - row[0] >= NARROWEST))
         return true;
     log_error_at(t->at, "%s %g follows %g, expected %s", t->boxes ? "the bin from" : "the node at",
-                 row[0], start, t->boxes ? "bins in order without gaps, from 0" :
+                 row[0], last, t->boxes ? "bins in order without gaps, from 0" :
                  "nodes that ascend from 0");
     return false;
 }
