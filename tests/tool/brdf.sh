@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# relume brdf: albedos of known materials, conversions there and back, drawings, and wrong usage.
+#
+# usage: brdf.sh RELUME
+set -u
+relume=$1
+# shellcheck source=tests/tool/pictures.sh
+. "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
+
+# roughly JSON INDEX VALUE: the first channel of directional albedo INDEX, to 1 %
+roughly() {
+    python3 - "$@" <<'END' || fail "albedo $2 is not $3"
+import json, sys
+value = json.loads(sys.argv[1])["directional_albedo"][int(sys.argv[2])]["albedo"][0]
+print(value)
+sys.exit(0 if abs(value / float(sys.argv[3]) - 1) < 0.01 else 1)
+END
+}
+
+expect 0 "$relume" brdf diffuse -D reflectance=0.8 --json
+near "$out" directional_albedo.3.albedo.1 0.8
+near "$out" hemispherical_albedo.2 0.8
+near "$out" reciprocity_error.mean 0
+near "$out" energy_error 0
+expect 0 "$relume" brdf diffuse
+contains "$out" "lobes: diffuse reflection"
+
+# A constant table is diffuse, as MERL table and as transfer probabilities.
+for file in paint.binary paint.transfer; do
+    expect 0 "$relume" brdf diffuse -D reflectance=0.25 --to "$folder/$file"
+    expect 0 "$relume" brdf "$folder/$file" --json
+    roughly "$out" 0 0.25
+    roughly "$out" 4 0.25
+done
+
+for kind in cut lobe curve; do
+    expect 0 "$relume" brdf roughplastic --plot "$folder/$kind.svg" --kind $kind --angles 0,45
+    contains "$(cat "$folder/$kind.svg")" "<polyline"
+done
+expect 0 "$relume" brdf roughplastic --plot "$folder/cut.png"
+expect 0 "$relume" info "$folder/cut.png" --json
+near "$out" width 640
+
+expect 1 "$relume" brdf rougplastic
+contains "$err" "did you mean \"roughplastic\""
+expect 1 "$relume" brdf roughplastic -D alpa=0.1
+contains "$err" "did you mean \"alpha\""
+expect 1 "$relume" brdf "$folder/none.binary"
+contains "$err" "none.binary"
+expect 1 "$relume" brdf diffuse --to "$folder/out.txt"
+contains "$err" ".transfer"
+expect 1 "$relume" brdf diffuse --plot "$folder/out.pdf"
+contains "$err" ".svg"
+expect 2 "$relume" brdf diffuse --angles 100
+contains "$err" "--angles"
+expect 2 "$relume" brdf
+
+finish
