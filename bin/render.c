@@ -9,6 +9,7 @@
 #include "base/mem.h"
 #include "base/progress.h"
 #include "driver/checkpoint.h"
+#include "driver/ranks.h"
 #include "driver/stop.h"
 #include "render_report.h"
 #include "subcommand.h"
@@ -110,6 +111,10 @@ static int trace_and_write(const struct values *v, const char *command, struct j
         .output = v->output, .command = command, .version = RELUME_VERSION, .seconds = v->checkpoint,
         .preview_seconds = v->preview, .resume = v->resume, .exr = &exr,
         .keep = v->checkpoint > 0 || v->resume || v->samples};
+    if (ranks_index() > 0) { // rank 0 keeps and reports
+        job_trace(job, film, &o.render);
+        return EXIT_DONE;
+    }
     bool written = checkpoint_open(&l->checkpoint, &keeping, job, film);
     if (written) {
         job_trace(job, film, &o.render);
@@ -137,6 +142,7 @@ static int run_job(const struct values *v, const char *command, const struct sce
     if (!file_temp_name(v->output, temp, sizeof temp)) // know now, not after an hour
         return EXIT_FAILED;
     progress_begin(&listener.progress, "render", v->quiet);
+    ranks_start();
     const struct job_options job_options = {
         .scene = v->scene, .spp = v->spp, .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
         .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
@@ -146,12 +152,17 @@ static int run_job(const struct values *v, const char *command, const struct sce
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
                     .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],
                     .height = v->size[1]}};
-    if (!job_open(&job, &job_options))
+    if (ranks_index() > 0)
+        log_set_level(LOG_ERROR); // rank 0 says it once
+    if (!job_open(&job, &job_options)) {
+        ranks_finish();
         return EXIT_FAILED;
+    }
     struct film *film = job_film(&job);
     const int code = trace_and_write(v, command, &job, film, &listener);
     film_destroy(film);
     job_close(&job);
+    ranks_finish();
     return code;
 }
 

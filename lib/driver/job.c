@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/thread.h"
+#include "driver/ranks.h"
 #include "phase/phase.h"
 
 enum { DEFAULT_SPP = 64, MOST_SAMPLES = 1 << 30 };
@@ -174,7 +175,7 @@ struct film *job_film(const struct job *job) {
 }
 
 void job_trace(struct job *job, struct film *film, struct render_result *result) {
-    render(film, &job->render, result);
+    ranks_render(film, &job->render, result);
 }
 
 struct film *job_render(struct job *job, struct render_result *result) {

@@ -28,3 +28,5 @@ struct render_result {
 
 // Traces what the film lacks.
 void render(struct film *film, const struct render_options *options, struct render_result *result);
+// The same as far as the end of a block that was begun.
+void render_to_block(struct film *film, const struct render_options *options);

@@ -59,6 +59,10 @@ struct film *film_create(const struct film_options *options) {
     return f;
 }
 
+struct film *film_create_like(const struct film *f) {
+    return film_create(&f->options);
+}
+
 void film_destroy(struct film *f) {
     if (!f)
         return;
@@ -126,6 +130,29 @@ void film_commit(struct film *f, uint32_t samples) {
     assert(f->open_samples <= FILM_BLOCK);
     if (f->open_samples == FILM_BLOCK)
         finish_block(f);
+}
+
+size_t film_tile_values(const struct film *f) {
+    return f->tile_values;
+}
+
+const double *film_running(const struct film *f, uint32_t tile) {
+    return f->open[f->committed ^ 1] + tile * f->tile_values;
+}
+
+void film_add_block(struct film *f, double *values, uint32_t samples) {
+    assert(f->open_samples == 0);
+    if (samples == FILM_BLOCK) {
+        sums_add(&f->sums, (struct sums_node){f->options.seed, 0, f->block++, 0, values});
+        return;
+    }
+    memcpy(f->open[f->committed], values, film_values(f) * sizeof *values);
+    f->open_samples = samples;
+    mem_free(values);
+}
+
+void film_add_rejected(struct film *f, uint64_t samples) {
+    atomic_fetch_add(&f->rejected, samples);
 }
 
 const struct sums *film_sums(const struct film *f) {

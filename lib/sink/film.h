@@ -41,6 +41,7 @@ struct film;
 
 // Options are copied except the arrays they point to, which must outlive the film.
 struct film *film_create(const struct film_options *options);
+struct film *film_create_like(const struct film *f); // empty, of the same options
 void film_destroy(struct film *f);
 
 // Bytes a film with these options takes when it holds `samples` samples a pixel.
@@ -56,6 +57,13 @@ struct sink *film_sink(struct film *f);
 
 // The pass added `samples` samples to every tile; they must not cross a block.
 void film_commit(struct film *f, uint32_t samples);
+// What view after view stored in the running pass: doubles of a tile, and those of all tiles from
+// `tile` on.
+size_t film_tile_values(const struct film *f);
+const double *film_running(const struct film *f, uint32_t tile);
+// A block that was summed elsewhere comes next; takes over its values (from mem_array).
+void film_add_block(struct film *f, double *values, uint32_t samples);
+void film_add_rejected(struct film *f, uint64_t samples);
 uint64_t film_samples(const struct film *f); // of every pixel
 uint64_t film_first(const struct film *f);   // number of the first sample of this run
 uint64_t film_next(const struct film *f);    // number of the sample that comes next
