@@ -17,8 +17,7 @@
 //   parts, is above the reference by 0.026 %, 6 standard errors, as is ours; rounded towards zero,
 //   ours is below it by 0.0001 % +- 0.0044 %.
 //
-// Needs the shared data; takes the name of a case, to run that one alone. Left out: scenes with
-// the principled material.
+// Needs the shared data; takes the name of a case, to run that one alone.
 #include <limits.h>
 
 #include "image/ztest.h"
