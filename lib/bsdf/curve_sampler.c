@@ -98,7 +98,7 @@ static bool is_empty(const struct curve_marginal *m) {
 }
 
 // Density over x.
-static double marginal_pdf(const struct curve_marginal *m, const struct angles *a,
+static double marginal_pdf(const struct curve_marginal *m, struct angles *a,
                            enum curve_strategy_kind kind) {
     double t;
     if (!m->basis)
@@ -218,8 +218,16 @@ void curve_sampler_init(struct curve_sampler *s, const struct form *f, const str
 
 // ---- densities ------------------------------------------------------------------------------
 
+// plane_slope along an axis that has this share of x^2 + y^2 = -2 log(cos_h).
+static double plane_slope_at(const struct gamma *g, double share, struct angles *a) {
+    const double x2 = 2 * angles_log(a) * share;
+    if (g->kind == GAMMA_RATIO)
+        return (1 + g->n * x2) / sqrt(g->n);
+    return x2 > 1e-16 ? sqrt(expm1(x2) / x2) : 1;
+}
+
 // Density of half vectors per solid angle.
-static double half_pdf(const struct curve_strategy *s, const struct angles *a) {
+static double half_pdf(const struct curve_strategy *s, struct angles *a) {
     const double c = a->cos_h;
     const double p = marginal_pdf(&s->first, a, s->kind) * marginal_pdf(&s->second, a, s->kind);
     if (!(p > 0) || s->kind == STRATEGY_POLAR) // over sin^2 theta_h and a quarter turn
@@ -228,14 +236,13 @@ static double half_pdf(const struct curve_strategy *s, const struct angles *a) {
         const double tx = sqr_d(a->h[0] / a->h[2]), ty = sqr_d(a->h[1] / a->h[2]);
         return 0.25 * p / ((1 + tx) * (1 + ty) * c * c * c);
     }
-    const struct gamma *u = &s->first.gamma, *v = &s->second.gamma;
-    const double jacobian = plane_slope(s->kind, u, gamma_at(u, a)) *
-                            plane_slope(s->kind, v, gamma_at(v, a));
+    const double jacobian = plane_slope_at(&s->first.gamma, a->cos2_phi, a) *
+                            plane_slope_at(&s->second.gamma, a->sin2_phi, a);
     return 0.25 * p / (jacobian * c); // dh = cos_h of the plane
 }
 
 double curve_strategy_pdf_sa(const struct curve_strategy *s, struct direction wo,
-                             struct direction wi, const struct angles *a) {
+                             struct direction wi, struct angles *a) {
     struct half_vector v;
     switch (s->kind) {
     case STRATEGY_COSINE: return wi.z / M_PI;
@@ -247,7 +254,7 @@ double curve_strategy_pdf_sa(const struct curve_strategy *s, struct direction wo
 }
 
 double curve_sampler_pdf_sa(const struct curve_sampler *s, struct direction wo,
-                            struct direction wi, const struct angles *a) {
+                            struct direction wi, struct angles *a) {
     double sum = 0;
     for (uint32_t i = 0; i < s->count; i++)
         if (s->strategy[i].share > 0)

@@ -64,9 +64,9 @@ void curve_sampler_init(struct curve_sampler *s, const struct form *f, const str
 
 // Density of wi per solid angle of one strategy, both directions above the surface.
 double curve_strategy_pdf_sa(const struct curve_strategy *s, struct direction wo,
-                             struct direction wi, const struct angles *a);
+                             struct direction wi, struct angles *a);
 double curve_sampler_pdf_sa(const struct curve_sampler *s, struct direction wo,
-                            struct direction wi, const struct angles *a);
+                            struct direction wi, struct angles *a);
 // u1 chooses the strategy; what is left of it, and u, v, choose the direction, which may lie below.
 struct direction curve_sampler_sample(const struct curve_sampler *s, struct direction wo,
                                       double u1, double u, double v);

@@ -35,7 +35,7 @@ static spectrum curve_value(const struct editable *self, uint32_t curve,
 }
 
 static void find_place(const struct editable *self, const struct form_slot *slot,
-                       const struct angles *a, struct curve_place *p) {
+                       struct angles *a, struct curve_place *p) {
     p->count = 0;
     if (slot->gamma.kind == GAMMA_NONE)
         return;
@@ -65,7 +65,7 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     return total > 0 ? &c->head : NULL;
 }
 
-static uint32_t values(const struct editable_closure *c, const struct angles *a,
+static uint32_t values(const struct editable_closure *c, struct angles *a,
                        struct editable_value out[FORM_TERMS]) {
     const struct form *f = &c->self->form;
     for (uint32_t t = 0; t < f->terms; t++) {
@@ -84,7 +84,7 @@ uint32_t editable_values(const struct closure *closure, vec3 wi,
     if (!(cos_theta(wi) > 0))
         return 0;
     const struct direction i = direction_from(wi);
-    const struct angles a = angles_between(c->wo, i);
+    struct angles a = angles_between(c->wo, i);
     return values(c, &a, out);
 }
 
@@ -98,7 +98,7 @@ static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     if (!(cos_theta(wi) > 0))
         return sum;
     const struct direction i = direction_from(wi);
-    const struct angles a = angles_between(c->wo, i);
+    struct angles a = angles_between(c->wo, i);
     for (uint32_t t = 0, n = values(c, &a, v); t < n; t++) {
         for (int s = 0; s < SLOTS; s++)
             if (f->term[t].slots[s].gamma.kind != GAMMA_NONE)

@@ -13,7 +13,7 @@ struct probe {
 
 // f cos_i of one term, per unit of its factor.
 static spectrum term_value(const struct form *f, const struct form_term *t,
-                           const struct angles *a) {
+                           struct angles *a) {
     double v[CURVE_CHANNELS];
     quotient_cos(&t->quotient, a, v);
     for (int s = 0; s < SLOTS; s++) {
@@ -42,7 +42,7 @@ static spectrum probe_angle(const struct editable *self, uint32_t term, double c
         *p = (struct probe){0};
         if (!(wi.z > 0))
             continue;
-        const struct angles a = angles_between(wo, wi);
+        struct angles a = angles_between(wo, wi);
         const spectrum f = term_value(&self->form, &self->form.term[term], &a);
         for (uint32_t k = 0; k < s->count; k++) {
             p->pdf[k] = curve_strategy_pdf_sa(&s->strategy[k], wo, wi, &a);

@@ -15,7 +15,7 @@ static double norm(double x, double y, double z) {
 }
 
 struct angles angles_make(const double wo[3], const double wi[3]) {
-    struct angles a = {.cos_i = wi[2], .cos_o = wo[2]};
+    struct angles a = {.cos_i = wi[2], .cos_o = wo[2], .log_h = -1};
     for (int i = 0; i < 3; i++) {
         a.wi[i] = wi[i];
         a.wo[i] = wo[i];
@@ -30,12 +30,16 @@ struct angles angles_make(const double wo[3], const double wi[3]) {
     a.sin_h = sqrt(r2) / l;
     a.cos2_phi = r2 > 0 ? x2 / r2 : 1;
     a.sin2_phi = r2 > 0 ? y2 / r2 : 0;
+    for (int k = 0; k < GAMMA_COUNT; k++)
+        a.known[k] = -1;
     return a;
 }
 
-double angles_log(const struct angles *a) {
+double angles_log(struct angles *a) {
     const double t = a->sin_h / a->cos_h;
-    return a->cos_h > 0 ? log1p(t * t) / 2 : HUGE_VAL;
+    if (a->log_h < 0)
+        a->log_h = a->cos_h > 0 ? log1p(t * t) / 2 : HUGE_VAL;
+    return a->log_h;
 }
 
 // arc cosine of exp(-l), l >= 0, for all sizes of l
@@ -53,7 +57,7 @@ static double theta(const double *w) {
     return atan2(sqrt(w[0] * w[0] + w[1] * w[1]), w[2]);
 }
 
-double gamma_at(const struct gamma *g, const struct angles *a) {
+static double compute(const struct gamma *g, struct angles *a) {
     const double end = 1.57079632679489661923;
     double v = 0;
     switch (g->kind) {
@@ -72,4 +76,12 @@ double gamma_at(const struct gamma *g, const struct angles *a) {
     case GAMMA_SLOPE_V: v = atan2(fabs(a->h[1]), a->h[2]); break;
     }
     return v < end ? v : end;
+}
+
+double gamma_at(const struct gamma *g, struct angles *a) {
+    if (g->kind == GAMMA_RATIO || g->kind >= GAMMA_COUNT)
+        return compute(g, a);
+    if (a->known[g->kind] < 0)
+        a->known[g->kind] = compute(g, a);
+    return a->known[g->kind];
 }

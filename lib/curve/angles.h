@@ -40,10 +40,13 @@ struct angles {
     double cos_h, sin_h;
     double h[3];               // wi + wo, not normalised
     double cos2_phi, sin2_phi; // of h's azimuth; 1 and 0 where h is the normal
+    double log_h;              // -log(cos_h), without cancellation; negative: not asked for yet
+    double known[GAMMA_COUNT]; // gammas that were asked for already; negative: not yet
     double wi[3], wo[3];
 };
 
 struct angles angles_make(const double wo[3], const double wi[3]);
-double gamma_at(const struct gamma *g, const struct angles *a);
-// -log(cos theta_h), without cancellation
-double angles_log(const struct angles *a);
+// Remembered in `a`, but for GAMMA_RATIO, whose exponent may differ from term to term.
+double gamma_at(const struct gamma *g, struct angles *a);
+// -log(cos theta_h)
+double angles_log(struct angles *a);

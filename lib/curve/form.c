@@ -6,8 +6,8 @@
 
 const char *const slot_names[] = {"f_o", "f_A", "f_B", NULL};
 
-static void term_eval(const struct form *f, const struct form_term *t,
-                         const struct angles *a, double out[CURVE_CHANNELS]) {
+static void term_eval(const struct form *f, const struct form_term *t, struct angles *a,
+                      double out[CURVE_CHANNELS]) {
     quotient_cos(&t->quotient, a, out);
     for (int k = 0; k < CURVE_CHANNELS; k++)
         out[k] *= t->scale[k];
@@ -22,8 +22,8 @@ static void term_eval(const struct form *f, const struct form_term *t,
 }
 
 void form_eval(const struct form *f, const double wo[3], const double wi[3],
-                  double out[CURVE_CHANNELS]) {
-    const struct angles a = angles_make(wo, wi);
+               double out[CURVE_CHANNELS]) {
+    struct angles a = angles_make(wo, wi);
     for (int k = 0; k < CURVE_CHANNELS; k++)
         out[k] = 0;
     for (uint32_t t = 0; t < f->terms && a.cos_i > 0 && a.cos_o > 0; t++) {

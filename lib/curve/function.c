@@ -46,17 +46,26 @@ static double beckmann(double g, double roughness) {
     return c > 0 ? exp(-t * t) / (roughness * roughness * c2 * c2) : 0;
 }
 
+static double gaussian(double g, double roughness) {
+    const double t = tan(g) / roughness;
+    return exp(-t * t);
+}
+
+static double schlick_z(double g, double r) {
+    const double s = sin(g), c = cos(g), q = s * s + r * c * c;
+    return r / (q * q);
+}
+
 double function_value(const struct curve_function *f, double g) {
-    const double p = f->p[0], s = sin(g), c = cos(g);
-    const double z = s * s + p * c * c, t = tan(g) / p;
+    const double p = f->p[0];
     switch (f->kind) {
     case FUNCTION_CONSTANT: return p;
     case FUNCTION_COS_POWER: return cos_power(g, p);
     case FUNCTION_BECKMANN: return beckmann(g, p);
-    case FUNCTION_GAUSSIAN: return exp(-t * t);
-    case FUNCTION_FRESNEL: return fresnel(c > 0 ? c : 0, p, f->p[1]);
+    case FUNCTION_GAUSSIAN: return gaussian(g, p);
+    case FUNCTION_FRESNEL: return fresnel(fmax(cos(g), 0), p, f->p[1]);
     case FUNCTION_SCHLICK_F: return schlick_f(g, p);
-    case FUNCTION_SCHLICK_Z: return p / (z * z);
+    case FUNCTION_SCHLICK_Z: return schlick_z(g, p);
     case FUNCTION_TABLE: return curve_at(f->table, f->channel, g);
     }
     return 0;

@@ -12,18 +12,18 @@ static double at_least(double cosine) {
 }
 
 // The minimum of G = min(1, 2 cos_h cos_o / cos_d, 2 cos_h cos_i / cos_d) is taken after division.
-static double v_cavity(const struct angles *a) {
+static double v_cavity(struct angles *a) {
     const double i = at_least(a->cos_i), o = at_least(a->cos_o), s = 2 * a->cos_h / a->cos_d;
     return fmin(1 / (i * o), fmin(s / i, s / o));
 }
 
-static double ashikhmin(const struct quotient *q, const struct angles *a) {
+static double ashikhmin(const struct quotient *q, struct angles *a) {
     const double fixed = q->n > 0 ? exp(-q->n * angles_log(a) * a->cos2_phi) : 1;
     return fixed / (a->cos_d * at_least(fmax(a->cos_i, a->cos_o)));
 }
 
 // cos_h = (cos_i + cos_o) / (2 cos_d)
-static double ward_bounded(const struct angles *a) {
+static double ward_bounded(struct angles *a) {
     const double s = at_least(a->cos_i + a->cos_o), t = 4 * a->cos_d / (s * s);
     return t * t;
 }
@@ -33,14 +33,14 @@ static double schlick_mask(double r, double v) {
     return at_least(r * (1 - v) + v);
 }
 
-static double schlick(const struct quotient *q, const struct angles *a) {
+static double schlick(const struct quotient *q, struct angles *a) {
     const double r = q->roughness, p2 = q->isotropy * q->isotropy;
     const double isotropy = sqrt(q->isotropy / (p2 * a->sin2_phi + a->cos2_phi));
     return isotropy / (schlick_mask(r, a->cos_i) * schlick_mask(r, a->cos_o));
 }
 
 // 1 - v v' / (m m'), m = v + r (1 - v), without cancellation at small r
-static double schlick_rest(const struct quotient *q, const struct angles *a) {
+static double schlick_rest(const struct quotient *q, struct angles *a) {
     const double r = q->roughness, i = a->cos_i, o = a->cos_o;
     const double di = r * (1 - i), d_o = r * (1 - o);
     return (di * o + d_o * i + di * d_o) /
@@ -48,17 +48,17 @@ static double schlick_rest(const struct quotient *q, const struct angles *a) {
 }
 
 // cos(phi_i - phi_o) sin(theta_i) sin(theta_o) / max(cos_i, cos_o)
-static double oren_nayar(const struct angles *a) {
+static double oren_nayar(struct angles *a) {
     const double c = a->wi[0] * a->wo[0] + a->wi[1] * a->wo[1];
     return fmax(c, 0) / at_least(fmax(a->cos_i, a->cos_o));
 }
 
-static double facets(const struct quotient *q, const struct angles *a) {
+static double facets(const struct quotient *q, struct angles *a) {
     const struct gamma i = {GAMMA_THETA_I, 0}, o = {GAMMA_THETA_O, 0};
     return 1 / (profile_at(q->g, gamma_at(&i, a)) * profile_at(q->g, gamma_at(&o, a)));
 }
 
-static double quotient(const struct quotient *q, const struct angles *a) {
+static double quotient(const struct quotient *q, struct angles *a) {
     switch (q->kind) {
     case QUOTIENT_V_CAVITY: return v_cavity(a);
     case QUOTIENT_ASHIKHMIN: return ashikhmin(q, a);
@@ -75,7 +75,7 @@ static double quotient(const struct quotient *q, const struct angles *a) {
     return 1;
 }
 
-void quotient_cos(const struct quotient *q, const struct angles *a,
+void quotient_cos(const struct quotient *q, struct angles *a,
                      double out[CURVE_CHANNELS]) {
     const struct gamma d = {GAMMA_THETA_D, 0};
     const double v = a->cos_i > 0 && a->cos_o > 0 ? quotient(q, a) * a->cos_i : 0;

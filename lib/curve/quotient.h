@@ -38,7 +38,7 @@ struct quotient {
 };
 
 // out: per channel
-void quotient_cos(const struct quotient *q, const struct angles *a, double out[CURVE_CHANNELS]);
+void quotient_cos(const struct quotient *q, struct angles *a, double out[CURVE_CHANNELS]);
 
 // Whether both are the same function (profiles: the same object).
 bool quotient_equal(const struct quotient *a, const struct quotient *b);
