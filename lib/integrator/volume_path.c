@@ -37,6 +37,7 @@ struct walker {
     struct sampler sampler;
     uint32_t events, surfaces;
     bool alive, first_done;
+    float passed;    // length of the way from the sensor to ray.o, while nothing has scattered
 };
 
 static struct sampler *draw(struct walker *w, uint32_t purpose) {
@@ -135,8 +136,11 @@ static void survive_roulette(struct walker *w, bool in_media) {
 static void first_event(struct walker *w, const struct surface *s, const struct closure *closure) {
     w->first_done = true;
     w->ctx->sink->type->covered(w->ctx->sink, w->index);
-    if (s && w->ctx->sink->wants_surface)
-        vertex_add_first(w->ctx, w->index, s, closure);
+    if (!s || !w->ctx->sink->wants_surface)
+        return;
+    struct surface seen = *s;
+    seen.t += w->passed;
+    vertex_add_first(w->ctx, w->index, &seen, closure);
 }
 
 // ---- in a medium --------------------------------------------------------------------------------
@@ -275,6 +279,7 @@ static void shade(struct walker *w, const struct accel_hit *hit) {
     w->alive = false;
     if (sampled && b.lobe & LOBE_NULL) {
         w->flight.beta *= b.weight;
+        w->passed += s.t;
         leave_surface(w, &s, w->ray.d);
     } else if (sampled && may_scatter(w, w->from.depth + 1)) {
         scatter_at_surface(w, &s, side, &b);
@@ -287,16 +292,17 @@ static void shade(struct walker *w, const struct accel_hit *hit) {
 static void step(struct walker *w) {
     const struct medium *m = medium_of(w, w->medium);
     struct accel_hit hit;
+    const float clip = w->ray.tmax; // of the sensor
     float t = INFINITY;
     w->ctx->rays++;
     w->rng.state = hash_u64(((uint64_t)w->sampler.seed << 32 | w->sampler.index) ^
                             hash_u64(w->events));
     if (m && m->plain) {
         t = medium_free_path(m, sampler_1d(draw(w, DRAW_DISTANCE)), &w->rng);
-        w->ray.tmax = t + 2 * slack(w, t);
+        w->ray.tmax = minf(clip, t + 2 * slack(w, t));
     }
     const bool found = accel_intersect(w->ctx->world->accel, &w->ray, &hit);
-    if (m && fly(w, m, found ? hit.t : INFINITY, t))
+    if (m && fly(w, m, found ? hit.t : clip, t))
         return;
     if (!w->alive)
         return;
@@ -318,6 +324,13 @@ static void start(struct walker *w, const struct path_start *from) {
     if (w->p->spectral) {
         w->sampler.dimension = CAMERA_LANE;
         w->flight.lane = (int)(sampler_1d(&w->sampler) * SPECTRUM_LANES);
+    }
+    w->passed = 0;
+    if (w->medium != SCENE_NONE) { // it begins at the near plane (as Mitsuba has it)
+        w->passed = w->ray.tmin;
+        w->ray.o += w->ray.tmin * w->ray.d;
+        w->ray.tmax -= w->ray.tmin;
+        w->ray.tmin = 0;
     }
     w->eta2 = 1;
     w->from = (struct path_origin){.p = from->ray.o, .delta = true};
