@@ -138,6 +138,87 @@ static void integrals_are_interpolated(const struct object *o) {
     }
 }
 
+// ---- rejection, the oracle ------------------------------------------------------------------
+
+enum { BINS = 10, DRAWS = 200000 };
+
+static int bin_of(vec3 wi) {
+    const int bin = (int)(wi[2] * BINS);
+    return bin < BINS ? bin : BINS - 1;
+}
+
+static vec3 uniform_direction(struct rng *rng) {
+    const double z = (double)rng_float(rng);
+    return direction(acos(z), 2 * M_PI * (double)rng_float(rng));
+}
+
+// Directions by rejection: uniform candidates, accepted with probability p / max. frozen: the
+// threshold is drawn once for all candidates of a direction, as the thesis prints it.
+static double reject(const struct object *o, vec3 wo, double most, bool frozen, double share[BINS]) {
+    struct rng rng = {11};
+    int tries = 0;
+    memset(share, 0, BINS * sizeof *share);
+    for (int i = 0; i < DRAWS / 10; i++) {
+        double x = (double)rng_float(&rng);
+        vec3 wi;
+        for (;;) {
+            wi = uniform_direction(&rng);
+            tries++;
+            if (x * most < eval_f(o, wo, wi) * (double)wi[2])
+                break;
+            if (!frozen)
+                x = (double)rng_float(&rng);
+        }
+        share[bin_of(wi)] += 1.0 / (DRAWS / 10);
+    }
+    return (double)tries / (DRAWS / 10);
+}
+
+static double chi2(const double share[BINS], const double expected[BINS]) {
+    double sum = 0;
+    for (int k = 0; k < BINS; k++)
+        sum += (share[k] - expected[k]) * (share[k] - expected[k]) / expected[k] * (DRAWS / 10);
+    return sum;
+}
+
+// Sections 6.B 3 and 4. Chi-square of 9 degrees: above 33.7 once in 10 000.
+static void samples_agree_with_rejection(const struct object *o) {
+    const vec3 wo = direction(0.6, 0);
+    double expected[BINS] = {0}, sampled[BINS] = {0}, share[BINS], total = 0, most = 0;
+    for (int i = 0; i < 500; i++)
+        for (int j = 0; j < 500; j++) { // uniform in solid angle
+            const vec3 wi = direction(acos((i + 0.5) / 500), (j + 0.5) * 2 * M_PI / 500);
+            const double p = eval_f(o, wo, wi) * (double)wi[2];
+            expected[bin_of(wi)] += p * 2 * M_PI / 250000;
+            most = fmax(most, p);
+        }
+    for (int k = 0; k < BINS; k++)
+        total += expected[k];
+    for (int k = 0; k < BINS; k++)
+        expected[k] /= total;
+    struct rng rng = {12};
+    struct closure_stack stack = {0};
+    const struct bsdf_point point = {0};
+    const struct closure *c = bsdf_resolve(o, &point, wo, &stack);
+    for (int i = 0; i < DRAWS; i++) {
+        struct bsdf_sample b;
+        const float u1 = rng_float(&rng), u = rng_float(&rng), v = rng_float(&rng);
+        if (closure_sample(c, u1, (struct vec2){u, v}, &b))
+            sampled[bin_of(b.wi)] += (double)b.weight[1] / total / DRAWS;
+    }
+    for (int k = 0; k < BINS; k++)
+        CHECK_NEAR(sampled[k], expected[k], 0.02 * expected[k] + 1e-3);
+    const double tries = reject(o, wo, most * 1.001, false, share);
+    const double good = chi2(share, expected);
+    reject(o, wo, most * 1.001, true, share);
+    const double frozen = chi2(share, expected);
+    printf("rejection: chi-square %.1f, frozen threshold %.0f; %.3f tries, expected %.3f\n", good,
+           frozen, tries, 2 * M_PI * most * 1.001 / total);
+    CHECK(good < 33.7);
+    CHECK(frozen > 100);
+    CHECK_NEAR(tries, 2 * M_PI * most * 1.001 / total, 0.02 * tries);
+}
+
 // What is written is read again; missing values are filled and counted; lies are refused.
 static void transfer_files_round_trip(void) {
     struct arena arena = {0};
@@ -204,6 +285,7 @@ int main(void) {
     nodes_return_what_was_stored(o);
     half_vectors_beat_cross_fading(o);
     integrals_are_interpolated(o);
+    samples_agree_with_rejection(o);
     finish_table(&t);
     arena_finish(&arena);
     transfer_files_round_trip();
