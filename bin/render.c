@@ -19,7 +19,7 @@ struct values {
     int spp, size[2], crop[4], max_depth, seed, threads;
     double seconds, noise, checkpoint, preview;
     const char *samples;
-    bool variance, light_groups, paths, half, lenient, quiet, json, resume;
+    bool variance, light_groups, paths, half, lenient, quiet, json, resume, adaptive;
     struct option_list defines;
 };
 
@@ -44,6 +44,9 @@ static const struct option_spec options[] = {
     {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
      .help = "render samples A to B-1 only, multiples of 64, for `relume merge`;\n"
              "keeps a journal"},
+    {.name = "adaptive", .type = OPTION_FLAG, .offset = AT(adaptive),
+     .help = "take more samples where a pilot of 32 finds noise, fewer elsewhere, the\n"
+             "same number in all; without bias. Layer `samples` says where"},
     {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
      .min = 0, .max = 1e9,
      .help = "every so often write what is done to OUT.exr.journal"},
@@ -147,6 +150,7 @@ static int run_job(const struct values *v, const char *command, const struct sce
         .scene = v->scene, .spp = v->spp, .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
         .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
         .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
+        .adaptive = v->adaptive,
         .samples = {samples[0], samples[1]}, .seconds = v->seconds, .noise = v->noise,
         .stop = stop_on_signals(), .progress = between_passes, .user = &listener,
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,

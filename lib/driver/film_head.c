@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/file.h"
+
 enum { VERSION = 1, TEXT_SIZE = 1024 };
 
 static const char *const flags[] = {"alpha", "variance", "moments", "paths"};
@@ -54,6 +56,11 @@ static void add_made_of(struct json *made_of, const struct job *job) {
              job->render.tracer.sampler->counted ? job->render.tracer.spp : 0);
     json_add_text(made_of, "sampler", text);
     json_add_count(made_of, "replicates", job->render.tracer.replicates);
+    const struct sample_map *map = job->film.map;
+    const size_t packets = map ? (size_t)map->width * (size_t)map->height : 0;
+    snprintf(text, sizeof text, map ? "%016" PRIx64 : "none",
+             map ? file_hash(map->quarters, packets, 0) : 0);
+    json_add_text(made_of, "sample map", text);
 }
 
 void film_head_set_crop(struct json *head, const struct film *film, const struct film_options *o) {
@@ -74,6 +81,12 @@ static void add_film(struct json *film, const struct film_options *o) {
         json_append_text(groups, o->group_names[i]);
 }
 
+static void add_map(struct json *head, const struct sample_map *map) {
+    struct arena arena = {0};
+    json_add_text(head, "map", sample_map_text(map, &arena));
+    arena_finish(&arena);
+}
+
 struct json *film_head_create(const struct job *job, const struct film *film, const char *command,
                               const char *version) {
     struct json *head = json_new_object();
@@ -85,6 +98,8 @@ struct json *film_head_create(const struct job *job, const struct film *film, co
     json_add_count(head, "height", job->scene->film.height);
     json_add_text(head, "command", command);
     json_add_text(head, "program", version);
+    if (job->film.map)
+        add_map(head, job->film.map);
     return head;
 }
 
@@ -144,6 +159,16 @@ static bool read_groups(const struct json *groups, struct film_options *o, struc
     return o->group_count <= FILM_MOST_GROUPS;
 }
 
+// The map of adaptive sampling, where there was one.
+static bool read_map(const struct json *head, int width, int height, struct film_options *o,
+                     struct arena *arena) {
+    const char *text = json_text(json_get(head, "map"));
+    struct sample_map *map = arena_alloc(arena, sizeof *map);
+    o->map = text ? map : NULL;
+    return !text || sample_map_parse(map, text, sample_map_packets(width),
+                                     sample_map_packets(height), arena);
+}
+
 bool film_head_options(const struct json *head, const char *path, struct film_options *o,
                        struct arena *arena) {
     const struct json *crop = json_get(head, "crop"), *film = json_get(head, "film");
@@ -158,7 +183,8 @@ bool film_head_options(const struct json *head, const char *path, struct film_op
                  read_int(json_at(crop, 2), o->x0 + 1, width, &o->x1) &&
                  read_int(json_at(crop, 3), o->y0 + 1, height, &o->y1) &&
                  read_int(json_get(film, "aovs"), 0, 2 * AOV_INSTANCE - 1, &aovs) &&
-                 read_groups(json_get(film, "light groups"), o, arena);
+                 read_groups(json_get(film, "light groups"), o, arena) &&
+                 read_map(head, width, height, o, arena);
     for (size_t i = 0; i < sizeof flags / sizeof *flags && sound; i++)
         sound = json_read_bool(json_get(film, flags[i]), flag_of(o, i));
     o->aovs = (uint32_t)aovs;

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/thread.h"
+#include "driver/pilot.h"
 #include "driver/ranks.h"
 #include "phase/phase.h"
 
@@ -142,6 +143,13 @@ static bool prepare(struct job *job, const struct job_options *o) {
     return set_render_options(job, o);
 }
 
+static bool use_pilot(struct job *job) {
+    if (!pilot_run(job, &job->scene->arena, &job->map))
+        return false;
+    job->film.map = job->render.tracer.map = &job->map;
+    return true;
+}
+
 bool job_open(struct job *job, const struct job_options *o) {
     *job = (struct job){0};
     struct scene_options reading = o->reading;
@@ -157,6 +165,10 @@ bool job_open(struct job *job, const struct job_options *o) {
         return false;
     }
     job->load_seconds = time_seconds() - start;
+    if (o->adaptive && !use_pilot(job)) {
+        job_close(job);
+        return false;
+    }
     for (uint32_t i = 0; i < job->scene->shape_count; i++)
         job->triangles += job->scene->shapes[i].mesh.triangle_count;
     return true;

@@ -20,6 +20,7 @@ struct job_options {
     int threads;
     const char *aovs;             // "albedo,N" or NULL
     bool variance, light_groups, paths;
+    bool adaptive;                // samples go where a pilot finds noise
     // Changes the scene between reading it and building the world; or NULL.
     void (*edit_scene)(struct scene *s, void *user);
     void *edit_user;
@@ -37,6 +38,7 @@ struct job {
     struct film_options film;
     struct render_options render;
     struct method method;  // of rendering
+    struct sample_map map; // of adaptive sampling; its memory is the scene's
     uint64_t defines_hash; // of the -D values
     double load_seconds; // reading and building
     uint64_t triangles;

@@ -76,6 +76,31 @@ static bool give_up(struct tracer *t) {
     return atomic_load(&t->abandoned);
 }
 
+// Traces, of the samples that the map has for a step, the `round`th of every packet that has one.
+// false: there was none.
+static bool trace_round(const struct tracer *t, struct worker *w, const struct sink_area *wanted,
+                        uint32_t step, uint32_t round, struct batch *b) {
+    const struct sample_map *map = t->options.map;
+    const int x0 = wanted->x0 / PACKET_SIDE * PACKET_SIDE;
+    const int y0 = wanted->y0 / PACKET_SIDE * PACKET_SIDE;
+    bool any = false;
+    if (!map && round > 0)
+        return false;
+    for (int y = y0; y < wanted->y1; y += PACKET_SIDE)
+        for (int x = x0; x < wanted->x1; x += PACKET_SIDE) {
+            const uint32_t quarters = sample_map_at(map, x, y);
+            const uint64_t sample = sample_map_taken(quarters, step) + round;
+            if (sample >= sample_map_taken(quarters, (uint64_t)step + 1))
+                continue;
+            start_paths(t, w, x, y, (uint32_t)sample, b);
+            any = true;
+            if (b->count == b->most)
+                trace_batch(t, w, b);
+        }
+    trace_batch(t, w, b); // a pixel's samples are added in order
+    return any;
+}
+
 static void trace_tile(void *ctx, size_t tile, int index) {
     struct tracer *t = ctx;
     struct worker *w = &t->workers[index];
@@ -87,15 +112,9 @@ static void trace_tile(void *ctx, size_t tile, int index) {
     if (give_up(t))
         return;
     sink->type->open(sink, t->first_tile + (uint32_t)tile, &wanted);
-    const int x0 = wanted.x0 / PACKET_SIDE * PACKET_SIDE, y0 = wanted.y0 / PACKET_SIDE * PACKET_SIDE;
     for (uint32_t s = t->first; s < t->first + t->count; s++) {
-        for (int y = y0; y < wanted.y1; y += PACKET_SIDE)
-            for (int x = x0; x < wanted.x1; x += PACKET_SIDE) {
-                start_paths(t, w, x, y, s, &batch);
-                if (batch.count == batch.most)
-                    trace_batch(t, w, &batch);
-            }
-        trace_batch(t, w, &batch); // a pixel's samples are added in order
+        for (uint32_t round = 0; trace_round(t, w, &wanted, s, round, &batch); round++)
+            ;
         if (give_up(t))
             return;
     }

@@ -9,6 +9,7 @@
 #include "filter/filter.h"
 #include "integrator/integrator.h"
 #include "sensor/sensor.h"
+#include "sink/sample_map.h"
 
 struct tracer_options {
     const struct world *world;
@@ -19,6 +20,7 @@ struct tracer_options {
     uint32_t spp;        // samples per pixel the sampler lays its points out for, >= 1
     uint32_t seed;
     uint32_t replicates; // independent scramblings a pixel's samples are dealt to: 1 to 16, power of 2
+    const struct sample_map *map; // NULL: every pixel takes every sample
     int threads;         // 0: default
     const volatile sig_atomic_t *stop; // becomes non-zero: finish within two seconds; or NULL
 };
@@ -32,7 +34,7 @@ struct tracer;
 // make_sink is called once per worker; the tracer destroys the sinks.
 struct tracer *tracer_create(const struct tracer_options *options,
                              struct sink *(*make_sink)(void *context), void *context);
-// Traces samples [first, first + count) of tiles [tile, tile + tiles), in order for each pixel. false:
+// Traces samples (steps of the map) [first, first + count) of tiles [tile, tile + tiles), in order for each pixel. false:
 // given up because of a stop; some tiles were not closed.
 bool tracer_run(struct tracer *t, uint32_t tile, uint32_t tiles, uint32_t first, uint32_t count);
 struct tracer_counts tracer_count(const struct tracer *t);

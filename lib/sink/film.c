@@ -199,9 +199,24 @@ void film_pixel(const struct film *f, int x, int y, double *sums) {
         sums[c] = sums_total(&f->sums, first + c, f->open[f->committed][first + c]);
 }
 
-uint64_t film_replicate_samples(const struct film *f, uint32_t replicate) {
-    return sums_samples_of_phase(&f->sums, FILM_REPLICATES, replicate) +
-           (f->open_samples + FILM_REPLICATES - 1 - replicate) / FILM_REPLICATES;
+// Adds what a pixel takes in steps [first, first + steps).
+static void count_steps(uint32_t quarters, uint64_t first, uint64_t steps, struct film_counts *n) {
+    const uint64_t low = sample_map_taken(quarters, first);
+    const uint64_t high = sample_map_taken(quarters, first + steps);
+    n->all += high - low;
+    for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+        n->replicate[r] += (high + FILM_REPLICATES - 1 - r) / FILM_REPLICATES -
+                           (low + FILM_REPLICATES - 1 - r) / FILM_REPLICATES;
+}
+
+void film_pixel_counts(const struct film *f, int x, int y, struct film_counts *n) {
+    const uint32_t quarters = sample_map_at(f->options.map, x, y);
+    *n = (struct film_counts){0};
+    for (size_t i = 0; i < f->sums.count; i++) {
+        const struct sums_node *node = &f->sums.nodes[i];
+        count_steps(quarters, sums_node_first(node), sums_node_samples(node), n);
+    }
+    count_steps(quarters, f->block * FILM_BLOCK, f->open_samples, n);
 }
 
 const struct film_layout *film_get_layout(const struct film *f) {

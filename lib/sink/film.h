@@ -7,6 +7,7 @@
 #pragma once
 
 #include "image/image.h"
+#include "sink/sample_map.h"
 #include "sink/sink.h"
 #include "sink/sums.h"
 
@@ -27,6 +28,7 @@ struct film_options {
     int x0, y0, x1, y1;   // pixels of the absolute grid to render, half-open
     uint32_t seed;        // that the samples to come are drawn with
     uint64_t first;       // the first of them: a multiple of FILM_BLOCK
+    const struct sample_map *map; // NULL: all pixels get the same; else `samples` are its steps
     bool alpha;
     bool variance;        // squared standard errors of the pixels, from replicates
     bool moments;         // second moments of single samples, as layer "m2"
@@ -39,7 +41,7 @@ struct film_options {
 
 struct film;
 
-// Options are copied except the arrays they point to, which must outlive the film.
+// Options are copied except what they point to, which must outlive the film.
 struct film *film_create(const struct film_options *options);
 struct film *film_create_like(const struct film *f); // empty, of the same options
 void film_destroy(struct film *f);

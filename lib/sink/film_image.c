@@ -16,19 +16,20 @@ static const char *const path_names[PATH_SLOTS] = {
     "indirect_glossy", "indirect_specular", "emission"};
 
 // Squared standard error of the mean from the means of the replicates that have samples.
-static void squared_error(const struct film *f, const double *replicates, double error[3]) {
-    const uint64_t samples = film_samples(f);
-    const uint64_t n = samples < FILM_REPLICATES ? samples : FILM_REPLICATES;
-    for (int c = 0; c < 3; c++) {
+static void squared_error(const struct film_counts *n, const double *replicates, double error[3]) {
+    uint32_t used = 0;
+    for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+        used += n->replicate[r] > 0;
+    for (uint32_t c = 0; c < 3; c++) {
         double mean = 0, spread = 0;
-        for (uint32_t r = 0; r < n; r++)
-            mean += replicates[3 * r + (uint32_t)c] / (double)samples;
-        for (uint32_t r = 0; r < n; r++) {
-            const double count = (double)film_replicate_samples(f, r);
-            const double d = replicates[3 * r + (uint32_t)c] / count - mean;
-            spread += d * d;
-        }
-        error[c] = n > 1 ? spread / (double)(n * (n - 1)) : 0;
+        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+            mean += replicates[3 * r + c] / (double)n->all;
+        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+            if (n->replicate[r]) {
+                const double d = replicates[3 * r + c] / (double)n->replicate[r] - mean;
+                spread += d * d;
+            }
+        error[c] = used > 1 ? spread / ((double)used * (used - 1)) : 0;
     }
 }
 
@@ -47,8 +48,7 @@ static void pixel_colour(const struct film_layout *l, const struct film_options 
 double film_noise(const struct film *f) {
     const struct film_layout *l = film_get_layout(f);
     const struct film_options *o = film_get_options(f);
-    const uint64_t n = film_samples(f);
-    if (l->replicate_channel == LAYOUT_NONE || n < 2)
+    if (l->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
         return -1;
     double *sums = mem_array(l->channels, sizeof *sums);
     const size_t pixels = (size_t)(o->x1 - o->x0) * (size_t)(o->y1 - o->y0);
@@ -58,9 +58,11 @@ double film_noise(const struct film *f) {
     for (int y = o->y0; y < o->y1; y++)
         for (int x = o->x0; x < o->x1; x++, i++) {
             double rgb[3], error[3];
+            struct film_counts n;
             film_pixel(f, x, y, sums);
-            pixel_colour(l, o, sums, 1.0 / (double)n, rgb);
-            squared_error(f, sums + l->replicate_channel, error);
+            film_pixel_counts(f, x, y, &n);
+            pixel_colour(l, o, sums, 1.0 / (double)n.all, rgb);
+            squared_error(&n, sums + l->replicate_channel, error);
             b[i] = (rgb[0] + rgb[1] + rgb[2]) / 3;
             e[i] = (error[0] + error[1] + error[2]) / 3;
             mean += b[i] / (double)pixels;
@@ -134,11 +136,11 @@ static void put_aovs(struct writer *w, const struct film_layout *l, const double
 }
 
 // All channels of one pixel, in the order of the file.
-static void put_pixel(struct writer *w, const struct film *f, const double *sums) {
+static void put_pixel(struct writer *w, const struct film *f, const struct film_counts *n,
+                      const double *sums) {
     const struct film_layout *l = film_get_layout(f);
     const struct film_options *o = film_get_options(f);
-    const uint64_t n = film_samples(f);
-    const double scale = 1.0 / (double)n;
+    const double scale = 1.0 / (double)n->all;
     double rgb[3];
     pixel_colour(l, o, sums, scale, rgb);
     put_rgb(w, "", rgb, 1);
@@ -152,30 +154,35 @@ static void put_pixel(struct writer *w, const struct film *f, const double *sums
         put_rgb(w, "m2", sums + l->moment_channel, scale);
     if (l->replicate_channel != LAYOUT_NONE) {
         double error[3];
-        squared_error(f, sums + l->replicate_channel, error);
+        squared_error(n, sums + l->replicate_channel, error);
         put_rgb(w, "variance", error, 1);
     }
+    if (o->map)
+        put(w, "samples", "Y", (double)n->all);
     if (l->aov_channel != LAYOUT_NONE)
-        put_aovs(w, l, sums, (double)n);
+        put_aovs(w, l, sums, (double)n->all);
 }
 
 bool film_image(const struct film *f, struct image *im) {
     const struct film_options *o = film_get_options(f);
     double *sums = mem_array(film_get_layout(f)->channels, sizeof *sums);
+    struct film_counts n;
     struct writer w = {0};
-    put_pixel(&w, f, sums);
+    film_pixel_counts(f, o->x0, o->y0, &n);
+    put_pixel(&w, f, &n, sums);
     if (!image_init(im, o->x1 - o->x0, o->y1 - o->y0, w.next)) {
         mem_free(sums);
         return false;
     }
     w = (struct writer){.im = im};
-    put_pixel(&w, f, sums); // names
+    put_pixel(&w, f, &n, sums); // names
     w.pixel = im->pixels;
     for (int y = o->y0; y < o->y1; y++)
         for (int x = o->x0; x < o->x1; x++, w.pixel += im->channels) {
             w.next = 0;
             film_pixel(f, x, y, sums);
-            put_pixel(&w, f, sums);
+            film_pixel_counts(f, x, y, &n);
+            put_pixel(&w, f, &n, sums);
         }
     mem_free(sums);
     return true;

@@ -27,7 +27,11 @@ void film_layout_add_aovs(const struct film_layout *l, double *pixel, const stru
 
 // Sums of all channels of pixel (x, y) on the absolute grid, over all samples so far.
 void film_pixel(const struct film *f, int x, int y, double *sums);
-// Samples of every pixel that belong to a replicate.
-uint64_t film_replicate_samples(const struct film *f, uint32_t replicate);
+// Samples of a pixel, and of its replicates.
+struct film_counts {
+    uint64_t all, replicate[FILM_REPLICATES];
+};
+
+void film_pixel_counts(const struct film *f, int x, int y, struct film_counts *n);
 const struct film_layout *film_get_layout(const struct film *f);
 const struct film_options *film_get_options(const struct film *f);

@@ -118,6 +118,17 @@ same seed0 crops
 refused "empty" left up
 refused "other samples" left b
 
+# Adaptive sampling: the map is the same for ranges, resumed runs and the whole.
+render adaptive --adaptive --spp 128
+render b0 --adaptive --samples 64:128
+render b1 --adaptive --samples 0:64
+merged adaptive_parts b0 b1
+same adaptive adaptive_parts
+render adaptive_resumed --adaptive --spp 50 --resume
+render adaptive_resumed --adaptive --spp 128 --resume
+same adaptive adaptive_resumed
+refused "sample map" seed0 b0
+
 # Limits. --noise: looked at every 64 samples; what was asked for is reached or the code is 3.
 expect 0 "$relume" render "$scene" -o "$folder/noise.exr" --noise 0.1 --quiet --json
 python3 -c 'import json, sys
