@@ -103,6 +103,16 @@ refused "no journal" a other
 expect 1 "$relume" render "$scene" -o "$folder/x.exr" --samples 100:250
 contains "$err" "128:256"
 
+# The line of the README, where GNU parallel is installed.
+if parallel --version 2>/dev/null | grep -q "GNU parallel"; then
+    # shellcheck disable=SC2016 # the braces are parallel's, in Perl
+    expect 0 env PATH="$(dirname "$relume"):$PATH" parallel --will-cite relume render "$scene" \
+        -o "$folder/part{}.exr" --samples '{= $_ = $_ * 64 . ":" . ($_ + 1) * 64 =}' \
+        "${options[@]@Q}" ::: 0 1 2 3 4 5 6
+    merged farm part5 part1 part0 part3 part6 part4 part2
+    same whole farm
+fi
+
 # Seeds count as samples of one picture.
 render seed0 --samples 0:64 --seed 0
 render seed1 --samples 0:64 --seed 1
