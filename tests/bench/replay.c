@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// Products of tiles against the speed of memory: full products with 32 and 16 bits, an update of 30
+// terms, OpenCL and C, and plain reading, interleaved; medians.
+//
+// usage: replay [PIXELS [COEFFICIENTS]]     (262144 and 256)
+#include "replay/replay.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/mem.h"
+#include "base/thread.h"
+
+enum { REPEATS = 11, TERMS = 30, KINDS = 2 };
+
+struct measured {
+    double times[REPEATS];
+};
+
+static int by_value(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static double median(struct measured *m) {
+    qsort(m->times, REPEATS, sizeof *m->times, by_value);
+    return m->times[REPEATS / 2];
+}
+
+// Adds up memory, sixteen sums at a time.
+struct reading {
+    const float *data;
+    size_t floats, parts;
+    double *sums;
+};
+
+static void read_part(void *ctx, size_t part, int worker) {
+    const struct reading *r = ctx;
+    const size_t n = r->floats / r->parts;
+    const float *p = r->data + part * n;
+    float sum[64] = {0};
+    (void)worker;
+    for (size_t i = 0; i + 64 <= n; i += 64)
+        for (size_t k = 0; k < 64; k++)
+            sum[k] += p[i + k];
+    for (size_t k = 0; k < 64; k++)
+        r->sums[part] += (double)sum[k];
+}
+
+static double time_reading(const float *data, size_t bytes) {
+    double sums[64] = {0};
+    struct reading r = {data, bytes / sizeof *data, 64, sums};
+    const double start = time_seconds();
+    thread_for(0, r.parts, read_part, &r);
+    const double end = time_seconds();
+    volatile double keep = sums[0];
+    (void)keep;
+    return end - start;
+}
+
+struct bench {
+    struct tensor tensor[KINDS];
+    struct tensor_block block[KINDS];
+    struct replay *replay[KINDS][2]; // by storage; with a device, without
+    float *weights;
+    uint32_t terms[TERMS];
+};
+
+static void make_tensors(struct bench *b, uint64_t pixels, uint32_t coefficients) {
+    uint32_t *list = mem_array(pixels, sizeof *list);
+    for (uint64_t i = 0; i < pixels; i++)
+        list[i] = (uint32_t)i;
+    for (int s = TENSOR_F32; s <= TENSOR_BF16; s++) {
+        b->block[s] = (struct tensor_block){
+            .object = "", .term = "", .axis_count = 1, .groups = 1, .coefficients = coefficients,
+            .axes = {{"theta_h", TENSOR_BOX, coefficients, NULL}}, .channels = 3,
+            .pixel_count = pixels, .pixels = list, .storage = (enum tensor_storage)s};
+        const size_t bytes = tensor_bytes(&b->block[s]);
+        uint16_t *values = mem_array(bytes, 1);
+        for (size_t i = 0; i < bytes / 2; i++)
+            values[i] = (uint16_t)(0x3f00 + (i * 2654435761u >> 24)); // about 0.5 to 2 as float too
+        b->block[s].values = values;
+        b->tensor[s] = (struct tensor){.width = (uint32_t)pixels, .height = 1, .block_count = 1,
+                                       .blocks = &b->block[s]};
+        for (int k = 0; k < 2; k++)
+            b->replay[s][k] =
+                replay_create(&b->tensor[s], &(struct replay_options){.no_device = k == 1});
+    }
+    b->weights = mem_array(3 * (size_t)coefficients, sizeof *b->weights);
+    for (uint32_t i = 0; i < 3 * coefficients; i++)
+        b->weights[i] = 1 / (float)(i + 1);
+    for (uint32_t i = 0; i < TERMS; i++)
+        b->terms[i] = i * (coefficients / TERMS);
+}
+
+static double time_product(const struct bench *b, struct replay *r) {
+    const double start = time_seconds();
+    replay_product(r, 0, b->weights);
+    replay_wait(r);
+    return time_seconds() - start;
+}
+
+static double time_update(const struct bench *b, struct replay *r) {
+    const double start = time_seconds();
+    replay_update(r, 0, b->terms, b->weights, TERMS);
+    replay_wait(r);
+    return time_seconds() - start;
+}
+
+int main(int argc, char **argv) {
+    const uint64_t pixels = argc > 1 ? strtoull(argv[1], NULL, 10) : 262144;
+    const uint32_t coefficients = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 256;
+    struct bench b = {0};
+    make_tensors(&b, pixels, coefficients);
+    struct measured read = {{0}}, product[KINDS][2], update[KINDS][2];
+    const size_t bytes = tensor_bytes(&b.block[TENSOR_F32]);
+    for (int warm = 0; warm < 2; warm++)
+        for (int i = 0; i < (warm ? REPEATS : 1); i++) {
+            read.times[i] = time_reading(b.block[TENSOR_F32].values, bytes);
+            for (int s = 0; s < KINDS; s++)
+                for (int k = 0; k < 2; k++) {
+                    product[s][k].times[i] = time_product(&b, b.replay[s][k]);
+                    update[s][k].times[i] = time_update(&b, b.replay[s][k]);
+                }
+        }
+    const double limit = median(&read);
+    printf("%llu pixels x %u coefficients x 3 channels, %.0f MB as 32 bits; reading takes %.1f ms, "
+           "%.1f GB/s\n", (unsigned long long)pixels, coefficients, (double)bytes * 1e-6, limit * 1e3,
+           (double)bytes * 1e-9 / limit);
+    for (int k = 0; k < 2; k++)
+        for (int s = 0; s < KINDS; s++) {
+            const double p = median(&product[s][k]), u = median(&update[s][k]);
+            const double gb = (double)tensor_bytes(&b.block[s]) * 1e-9;
+            printf("%-12.12s %2d bits: product %6.1f ms, %.1f GB/s = %.2f of reading; %u terms %5.2f ms, "
+                   "%.1f times faster\n", replay_device(b.replay[s][k]), s == TENSOR_F32 ? 32 : 16,
+                   p * 1e3, gb / p, gb / p / ((double)bytes * 1e-9 / limit), TERMS, u * 1e3, p / u);
+        }
+    for (int s = 0; s < KINDS; s++)
+        for (int k = 0; k < 2; k++)
+            replay_destroy(b.replay[s][k]);
+    return 0;
+}
