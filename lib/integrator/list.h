@@ -3,6 +3,7 @@
 X(path)
 X(volpath)
 X(volpathmis)
+X(dipole)
 X(direct)
 X(aov)
 X(moment)
