@@ -122,7 +122,7 @@ static int run(const void *values, const char *command) {
     file_extension(o->file, extension, sizeof extension);
     struct json *out = json_new_object();
     json_add_text(out, "file", o->file);
-    if (strcmp(extension, "xml") == 0)
+    if (scene_is_format(o->file) && !is_mesh(extension))
         code = tell_scene(o, out);
     else if (is_mesh(extension))
         code = tell_mesh(o->file, out) ? EXIT_DONE : EXIT_FAILED;
@@ -149,7 +149,7 @@ static const struct option_spec options[] = {
 
 static const struct option_argument arguments[] = {
     {.name = "FILE", .offset = AT(file),
-     .help = "a scene (.xml), a mesh (OBJ, PLY, ...) or a picture (EXR, PNG, HDR, JPEG, ...)"},
+     .help = "a scene (.xml, .gltf, .glb), a mesh (OBJ, PLY, ...) or a picture (EXR, PNG, HDR, JPEG, ...)"},
     {.name = NULL},
 };
 

@@ -303,6 +303,12 @@ bool image_decode_part_in_child(const char *path, const char *part, image_decode
     return find_file(&in) && run_child(&in, decode, im);
 }
 
+bool image_decode_bytes_in_child(const char *name, const void *data, size_t size,
+                                 image_decoder decode, struct image *im) {
+    struct decoder_input in = {.path = name, .data = data, .file_size = size};
+    return run_child(&in, decode, im);
+}
+
 bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
                            struct image *im) {
     struct decoder_input in = {.path = path};

@@ -16,6 +16,7 @@
 struct decoder_input {
     const char *path;
     const char *part; // of a file with several, by name; NULL: the first
+    const void *data; // the file's bytes where they are in memory already; else NULL
     uint64_t file_size;
     char message[512]; // why it failed, without the file's name
     bool unsupported;  // sound as far as it was read, but this decoder lacks a part it needs
@@ -42,6 +43,9 @@ bool decoder_fail(struct decoder_input *in, const char *format, ...)
 // file unsupported. false after one error message that names the file.
 bool image_decode_in_child(const char *path, image_decoder decode, image_decoder fallback,
                            struct image *im);
+// The same of bytes in memory.
+bool image_decode_bytes_in_child(const char *name, const void *data, size_t size,
+                                 image_decoder decode, struct image *im);
 // The same for a part of a file.
 bool image_decode_part_in_child(const char *path, const char *part, image_decoder decode,
                                 struct image *im);

@@ -106,6 +106,12 @@ bool image_read(const char *path, struct image *im) {
     return image_decode_in_child(path, exr ? exr_decode : oiio_decode, exr ? oiio_decode : NULL, im);
 }
 
+bool image_read_bytes(const char *name, const struct image_bytes *bytes, struct image *im) {
+    *im = (struct image){0};
+    return oiio_load() &&
+           image_decode_bytes_in_child(name, bytes->data, bytes->size, oiio_decode, im);
+}
+
 // Finds the channels of a layer that make its colour; false if it has none.
 static bool find_rgb(const struct image *im, const char *layer, int channel[3]) {
     static const char *const sets[3][3] = {{"R", "G", "B"}, {"X", "Y", "Z"}, {"Y", "Y", "Y"}};

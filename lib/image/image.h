@@ -47,6 +47,16 @@ int image_find_channel(const struct image *im, const char *name); // -1: none
 // channels are refused. DWA compression, which OpenEXRCore lacks, is read through OpenImageIO.
 bool image_read(const char *path, struct image *im);
 
+// A picture file that lies in memory: part of another file. Readers of such files keep it in the
+// arena under this kind and a name that bitmaps then give for a file name.
+#define IMAGE_EMBEDDED "embedded picture"
+struct image_bytes {
+    const void *data;
+    size_t size;
+};
+// PNG, JPEG and the like, as image_read does; `name` is for messages.
+bool image_read_bytes(const char *name, const struct image_bytes *bytes, struct image *im);
+
 struct image_exr_options {
     bool half;                // 16-bit channels; values beyond its range become infinite
     uint64_t *half_overflows; // is set to their number; may be NULL

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only C++ file: OpenImageIO has no C interface. Built as a module (oiio.h says why).
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <cstdio>
@@ -29,13 +30,27 @@ static bool is_srgb(const OIIO::ImageSpec &spec, const std::string &format) {
     return (small || wide_png) && !linear;
 }
 
+// OpenImageIO chooses the decoder by the extension, which bytes in memory lack.
+static const char *name_by_content(const struct decoder_input *in) {
+    const auto *b = static_cast<const unsigned char *>(in->data);
+    if (in->file_size > 2 && b[0] == 0xff && b[1] == 0xd8)
+        return "embedded.jpg";
+    if (in->file_size > 12 && std::memcmp(b + 8, "WEBP", 4) == 0)
+        return "embedded.webp";
+    return "embedded.png";
+}
+
 static bool decode(const struct oiio_host *host, struct decoder_input *in, struct image *im) {
     // The child has no threads but this one; libraries must not wait for others.
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1; // colour stays as it stands in the file
-    auto input = OIIO::ImageInput::open(in->path, &config);
+    OIIO::Filesystem::IOMemReader memory(const_cast<void *>(in->data), in->file_size);
+    OIIO::Filesystem::IOProxy *proxy = &memory;
+    if (in->data)
+        config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    auto input = OIIO::ImageInput::open(in->data ? name_by_content(in) : in->path, &config);
     if (!input)
         return fail(in, OIIO::geterror());
     const OIIO::ImageSpec &spec = input->spec();

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "image/image.h"
 #include "math/ior.h"
 #include "scene/params.h"
 #include "texture/texture.h"
@@ -86,7 +87,7 @@ static bool read_string(struct reader *r, const struct xml_node *node, const str
     if (!has_tag(node, "string"))
         return wrong_tag(node, p, "string");
     const char *text = xml_get(node, "value");
-    if (p->type == PARAM_FILE) {
+    if (p->type == PARAM_FILE && !arena_find(r->arena, IMAGE_EMBEDDED, text)) {
         text = load_find_file(r, text, node->at);
         if (!text || !load_hash_file(r, text))
             return false;

@@ -65,6 +65,7 @@ struct reader {
     struct list textures, bsdfs, sensors; // struct object *
     struct list volumes, phases, media;   // struct object *
     struct list shapes, instances, lights, jobs;
+    struct list made; // struct mesh: by readers of other formats, until a shape takes it
     struct object *default_bsdf[DEFAULT_BSDFS];
     uint32_t group_count;
     int depth; // of objects being made inside objects

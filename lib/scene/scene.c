@@ -4,7 +4,30 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "scene/reader.h"
+#include "scene/formats.h"
+
+// By the file's extension.
+static const struct format {
+    const char *extension;
+    struct xml_node *(*tree)(struct reader *r, const char *path);
+} formats[] = {
+    {"xml", load_scene_tree},
+    {"gltf", gltf_scene_tree},
+    {"glb", gltf_scene_tree},
+};
+
+static const struct format *find_format(const char *path) {
+    char extension[8];
+    file_extension(path, extension, sizeof extension);
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (strcmp(extension, formats[i].extension) == 0)
+            return &formats[i];
+    return NULL;
+}
+
+bool scene_is_format(const char *path) {
+    return find_format(path) != NULL;
+}
 
 static bool read_child(struct reader *r, struct xml_node *child) {
     struct id_entry *entry;
@@ -83,26 +106,27 @@ static void finish(struct reader *r) {
     s->media = keep(r, &r->media, sizeof *s->media, &s->medium_count);
     s->sensors = keep(r, &r->sensors, sizeof *s->sensors, &s->sensor_count);
     s->group_count = r->group_count;
+    for (size_t i = 0; i < r->made.count; i++)
+        mesh_finish(&LIST_AT(&r->made, struct mesh, i)); // those that no shape has taken
     struct list *lists[] = {&r->directories, &r->variables, &r->ids, &r->hashed, &r->ignored,
                             &r->textures, &r->bsdfs, &r->volumes, &r->phases, &r->media, &r->sensors, &r->shapes, &r->instances,
-                            &r->lights, &r->jobs};
+                            &r->lights, &r->jobs, &r->made};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         mem_free(lists[i]->items);
     mem_free(r->id_table);
 }
 
 struct scene *scene_read(const char *path, const struct scene_options *options) {
-    char extension[8];
-    file_extension(path, extension, sizeof extension);
-    if (strcmp(extension, "xml") != 0) {
-        log_error("%s: is not a scene format that is read (xml)", path);
+    const struct format *format = find_format(path);
+    if (!format) {
+        log_error("%s: is not a scene format that is read (xml, gltf, glb)", path);
         return NULL;
     }
     struct scene *s = mem_array(1, sizeof *s);
     struct reader r = {.options = options, .scene = s, .arena = &s->arena};
     s->path = arena_strdup(&s->arena, path);
     s->sensor_medium = SCENE_NONE;
-    struct xml_node *root = load_scene_tree(&r, s->path);
+    struct xml_node *root = format->tree(&r, s->path);
     const bool ok = root && read_tree(&r, root);
     if (ok)
         ignored_report(&r);

@@ -114,6 +114,8 @@ struct scene_options {
     bool lenient;           // unknown parameters warn instead of failing
 };
 
-// Reads by the file's extension (.xml). NULL after an error message.
+// Whether the extension is one that scene_read knows.
+bool scene_is_format(const char *path);
+// Reads by the file's extension (.xml, .gltf, .glb). NULL after an error message.
 struct scene *scene_read(const char *path, const struct scene_options *options);
 void scene_destroy(struct scene *s);

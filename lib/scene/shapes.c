@@ -51,6 +51,11 @@ static const struct param cylinder_params[] = {
     PARAM_END,
 };
 static const struct param group_params[] = {PARAM_END};
+static const struct param made_params[] = {
+    COMMON_PARAMS,
+    {"shape_index", PARAM_INT, FIELD(shape_index), .min = 0, .max = 4e9, .help = "which mesh"},
+    PARAM_END,
+};
 
 #define SHAPE(name, help, params) {name, help, NULL, params, sizeof(struct shape_data)}
 
@@ -64,13 +69,14 @@ static const struct entry shape_types[] = {
     SHAPE("instance", "a shapegroup, placed without copying it", plain_params),
     SHAPE("obj", "mesh of an OBJ file", obj_params),
     SHAPE("mesh", "mesh of any other file", mesh_params),
+    SHAPE("made", "mesh that a reader of another format made", made_params),
 };
 static const struct entry *const shape_entries[] = {
     &shape_types[0], &shape_types[1], &shape_types[2], &shape_types[3], &shape_types[4],
     &shape_types[5], &shape_types[6], NULL};
 const struct registry scene_shapes = {"shape", shape_entries};
 
-enum { RECTANGLE, CUBE, SPHERE, DISK, CYLINDER, GROUP, INSTANCE, OBJ, MESH };
+enum { RECTANGLE, CUBE, SPHERE, DISK, CYLINDER, GROUP, INSTANCE, OBJ, MESH, MADE };
 
 const struct param *scene_mesh_params(const struct entry *format) {
     return shape_types[strcmp(format->name, "obj") == 0 ? OBJ : MESH].params;
@@ -292,6 +298,13 @@ static void queue_mesh(struct reader *r, const struct shape_data *d, const struc
         .flip_uvs = d->flip_tex_coords != flip_default, .shape_name = d->shape_name, .threads = 1};
 }
 
+// Each mesh has one taker.
+static void take_made(struct reader *r, int index, struct mesh *m) {
+    struct mesh *made = &LIST_AT(&r->made, struct mesh, index);
+    *m = *made;
+    *made = (struct mesh){0};
+}
+
 static bool make_shape(struct reader *r, struct xml_node *node, int type,
                        const struct entry *mesh_reader, uint32_t group) {
     const struct entry *e = type == MESH
@@ -313,6 +326,8 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
         mesh_make_rectangle(&s->mesh);
     else if (type == CUBE)
         mesh_make_cube(&s->mesh);
+    else if (type == MADE)
+        take_made(r, d.shape_index, &s->mesh);
     else if (type == MESH)
         queue_mesh(r, &d, mesh_reader, e == &shape_types[OBJ]);
     else if (!place_quadric(node, type, &d, s))
@@ -346,7 +361,8 @@ static bool make_instance(struct reader *r, struct xml_node *node) {
 }
 
 // The type of a shape, and its mesh reader where it is a file. -1 after an error message.
-static int shape_type(const struct xml_node *node, const struct entry **mesh_reader) {
+static int shape_type(const struct reader *r, const struct xml_node *node,
+                      const struct entry **mesh_reader) {
     const char *type = xml_get(node, "type");
     *mesh_reader = registry_find(&mesh_readers, type);
     if (*mesh_reader)
@@ -354,6 +370,8 @@ static int shape_type(const struct xml_node *node, const struct entry **mesh_rea
     const struct entry *e = registry_find(&scene_shapes, type);
     if (e)
         return (int)(e - shape_types);
+    if (r->made.count > 0 && strcmp(type, shape_types[MADE].name) == 0)
+        return MADE; // no file can say so: its tree has no such meshes
     const char *nearest = registry_nearest(&scene_shapes, type);
     nearest = nearest ? nearest : registry_nearest(&mesh_readers, type);
     log_error_at(node->at, "shape \"%s\" is not known%s%s%s", type,
@@ -368,7 +386,7 @@ static bool group_child(struct reader *r, struct xml_node *child, struct xml_nod
     (void)entry;
     if (strcmp(target->tag, "shape") != 0)
         return refuse(child, target);
-    const int type = shape_type(target, &mesh_reader);
+    const int type = shape_type(r, target, &mesh_reader);
     if (type == GROUP || type == INSTANCE) {
         log_error_at(child->at, "a shapegroup cannot hold a %s", shape_types[type].name);
         return false;
@@ -392,7 +410,7 @@ static bool group_read(struct reader *r, struct xml_node *node, struct id_entry 
 bool shape_read(struct reader *r, struct xml_node *node, struct id_entry *entry) {
     const struct entry *mesh_reader;
     uint32_t group;
-    const int type = shape_type(node, &mesh_reader);
+    const int type = shape_type(r, node, &mesh_reader);
     if (type == GROUP)
         return group_read(r, node, entry, &group);
     if (type == INSTANCE)

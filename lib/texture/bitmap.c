@@ -178,9 +178,9 @@ static bool prepare(struct object *object, struct arena *arena) {
     struct bitmap *self = object->data;
     struct image im = {0};
     int channel[3];
-    (void)arena;
+    const struct image_bytes *bytes = arena_find(arena, IMAGE_EMBEDDED, self->filename);
     uv_prepare(&self->uv);
-    if (!image_read(self->filename, &im))
+    if (!(bytes ? image_read_bytes(self->filename, bytes, &im) : image_read(self->filename, &im)))
         return false;
     const bool ok = choose_channels(self, &im, channel, &self->channels);
     if (ok) {

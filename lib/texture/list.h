@@ -3,3 +3,5 @@
 X(bitmap)
 X(checkerboard)
 X(mesh_attribute)
+X(product)
+X(step)

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+// Materials of glTF (specification, 3.9, and the KHR_materials extensions) as materials of ours.
+//
+//   glTF                                  here
+//   ------------------------------------  ------------------------------------------------------
+//   pbrMetallicRoughness                  principled: base_color, metallic, roughness
+//   COLOR_0                               base_color times mesh_attribute vertex_color
+//   normalTexture (scale)                 normalmap
+//   occlusionTexture                      nothing: light is traced
+//   emissiveFactor, emissiveTexture       area light on the side of the normals
+//   alphaMode MASK, BLEND                 mask (MASK: opaque where alpha reaches alphaCutoff)
+//   doubleSided                           opaque materials are twosided either way: nothing is culled
+//   KHR_materials_emissive_strength       factor of the light's radiance
+//   KHR_materials_ior                     eta
+//   KHR_materials_specular                eta with the same reflectance at the normal
+//   KHR_materials_transmission            principledthin: spec_trans (a thin sheet), or with
+//   KHR_materials_volume                  principled: spec_trans, and a homogeneous medium inside
+//   KHR_materials_clearcoat               principled: clearcoat, clearcoat_gloss
+//   KHR_materials_sheen                   principled: sheen
+//   KHR_materials_anisotropy              principled: anisotropic; a metal: roughconductor
+//   KHR_materials_dispersion, iridescence nothing: one warning
+//   KHR_texture_transform                 to_uv of the bitmap
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/gltf.h"
+
+// A material while it is made.
+struct making {
+    struct gltf *g;
+    struct reader *r;
+    const struct json *material, *pbr;
+    const struct json *transmission, *volume, *clearcoat, *sheen, *anisotropy, *specular;
+    int colour_channels; // of COLOR_0: 0, 3, 4
+    double base[4], metallic, roughness, eta;
+    struct gltf_material *out;
+};
+
+static const struct json *texture_of(const struct making *m, const struct json *object,
+                                     const char *key) {
+    const struct json *info = json_get(object, key);
+    if (!info)
+        return NULL;
+    const struct json *moved = gltf_extension(info, "KHR_texture_transform");
+    const int set = (int)gltf_number(moved, "texCoord", gltf_number(info, "texCoord", 0));
+    if (set != m->out->wants.uv_set)
+        gltf_warn(m->g, "a material looks up %s by TEXCOORD_%d and others by TEXCOORD_%d, which "
+                  "takes its place: a mesh has one set here", key, set, m->out->wants.uv_set);
+    return info;
+}
+
+static bool is_white(const double *v, int count) {
+    for (int i = 0; i < count; i++)
+        if (v[i] != 1)
+            return false;
+    return true;
+}
+
+static void add_constant(const struct making *m, struct xml_node *parent, const char *name,
+                         const double *factor, int channels) {
+    if (channels == 3)
+        tree_triple(m->r, parent, "rgb", name, factor);
+    else
+        tree_number(m->r, parent, name, factor[0]);
+}
+
+// A parameter that is a factor, or a factor times a channel of a texture.
+static bool add_factor(const struct making *m, struct xml_node *parent, const char *name,
+                       const double *factor, int channels, const struct json *info,
+                       const char *channel, bool raw) {
+    struct gltf_texture_use use = {name, channel, raw};
+    if (!info) {
+        add_constant(m, parent, name, factor, channels);
+        return true;
+    }
+    if (is_white(factor, channels))
+        return gltf_add_texture(m->g, m->r, parent, info, &use);
+    struct xml_node *product = tree_add(m->r, parent, "texture", "product", NULL);
+    xml_set(product, "name", name, m->r->arena);
+    use.name = "texture_0";
+    const double grey[3] = {factor[0], factor[0], factor[0]};
+    tree_triple(m->r, product, "rgb", "texture_1", channels == 3 ? factor : grey);
+    return gltf_add_texture(m->g, m->r, product, info, &use);
+}
+
+static bool add_number(const struct making *m, struct xml_node *parent, const char *name,
+                       double factor, const struct json *info, const char *channel) {
+    return add_factor(m, parent, name, &factor, 1, info, channel, true);
+}
+
+// A parent for one factor of a product with a vertex attribute, which is put in already.
+static struct xml_node *under_attribute(const struct making *m, struct xml_node *parent,
+                                        const char **name, const char *attribute) {
+    struct xml_node *product = tree_add(m->r, parent, "texture", "product", NULL);
+    xml_set(product, "name", *name, m->r->arena);
+    struct xml_node *colours = tree_add(m->r, product, "texture", "mesh_attribute", NULL);
+    xml_set(colours, "name", "texture_1", m->r->arena);
+    tree_text(m->r, colours, "string", "name", attribute);
+    *name = "texture_0";
+    return product;
+}
+
+static bool add_base_colour(const struct making *m, struct xml_node *node, const char *name) {
+    if (m->colour_channels)
+        node = under_attribute(m, node, &name, "vertex_color");
+    return add_factor(m, node, name, m->base, 3, texture_of(m, m->pbr, "baseColorTexture"), NULL,
+                      false);
+}
+
+// ---- parts of the principled material -------------------------------------------------------
+
+// Index whose reflectance at the normal is F0.
+static double index_of(double F0) {
+    const double root = sqrt(fmin(fmax(F0, 0), 0.98));
+    return (1 + root) / (1 - root);
+}
+
+// KHR_materials_specular: F0 = ((n - 1) / (n + 1))^2 specularColorFactor specularFactor
+static void apply_specular(struct making *m) {
+    const struct json *e = m->specular;
+    double colour[3] = {1, 1, 1};
+    if (!e)
+        return;
+    gltf_numbers(e, "specularColorFactor", 3, colour);
+    const double mean = 0.2126 * colour[0] + 0.7152 * colour[1] + 0.0722 * colour[2];
+    if (colour[0] != colour[1] || colour[1] != colour[2])
+        gltf_warn(m->g, "specularColorFactor counts by its luminance");
+    if (json_get(e, "specularTexture") || json_get(e, "specularColorTexture"))
+        gltf_warn(m->g, "textures of KHR_materials_specular are not used");
+    if (m->transmission) {
+        gltf_warn(m->g, "KHR_materials_specular is not used with transmission");
+        return;
+    }
+    const double root = (m->eta - 1) / (m->eta + 1);
+    m->eta = index_of(root * root * mean * gltf_number(e, "specularFactor", 1));
+}
+
+static bool add_clearcoat(const struct making *m, struct xml_node *node) {
+    const struct json *e = m->clearcoat;
+    const double strength = gltf_number(e, "clearcoatFactor", 0);
+    if (strength == 0)
+        return true;
+    if (json_get(e, "clearcoatRoughnessTexture"))
+        gltf_warn(m->g, "clearcoatRoughnessTexture is not used, its factor is");
+    if (json_get(e, "clearcoatNormalTexture"))
+        gltf_warn(m->g, "clearcoatNormalTexture is not used: coats have the normals of their base");
+    const double root = gltf_number(e, "clearcoatRoughnessFactor", 0);
+    // clearcoat_gloss runs from alpha 0.1 to 0.001
+    tree_number(m->r, node, "clearcoat_gloss", fmin(fmax((0.1 - root * root) / 0.099, 0), 1));
+    return add_number(m, node, "clearcoat", strength, texture_of(m, e, "clearcoatTexture"), "r");
+}
+
+static void add_sheen(const struct making *m, struct xml_node *node) {
+    double colour[3] = {0, 0, 0};
+    if (!gltf_numbers(m->sheen, "sheenColorFactor", 3, colour))
+        return;
+    const double most = fmax(colour[0], fmax(colour[1], colour[2]));
+    gltf_warn(m->g, "KHR_materials_sheen becomes the sheen of principled: white, without roughness");
+    if (most > 0)
+        tree_number(m->r, node, "sheen", fmin(most, 1));
+}
+
+// KHR_materials_anisotropy: alpha along the tangent mix(alpha, 1, strength^2), across it alpha.
+static void widths(const struct making *m, double alpha[2]) {
+    const double s = gltf_number(m->anisotropy, "anisotropyStrength", 0);
+    alpha[1] = fmax(m->roughness * m->roughness, 1e-3);
+    alpha[0] = alpha[1] + (1 - alpha[1]) * s * s;
+}
+
+static void warn_of_turn(const struct making *m) {
+    if (gltf_number(m->anisotropy, "anisotropyRotation", 0) != 0 ||
+        json_get(m->anisotropy, "anisotropyTexture"))
+        gltf_warn(m->g, "anisotropyRotation and anisotropyTexture are not used: highlights stretch "
+                  "along u");
+}
+
+// principled: alpha = roughness^2 / aspect and times aspect, aspect^2 = 1 - 0.9 anisotropic
+static bool add_roughness(const struct making *m, struct xml_node *node) {
+    const struct json *info = texture_of(m, m->pbr, "metallicRoughnessTexture");
+    double roughness = m->roughness;
+    if (m->anisotropy) {
+        double alpha[2];
+        widths(m, alpha);
+        const double ratio = fmax(alpha[1] / alpha[0], 0.1);
+        roughness = info ? roughness : fmin(sqrt(sqrt(alpha[0] * fmax(alpha[1], 0.1 * alpha[0]))), 1);
+        tree_number(m->r, node, "anisotropic", fmin((1 - ratio) / 0.9, 1));
+        warn_of_turn(m);
+    }
+    return add_number(m, node, "roughness", roughness, info, "g");
+}
+
+// ---- whole materials ------------------------------------------------------------------------
+
+static struct xml_node *start(const struct making *m, struct xml_node *parent, const char *type) {
+    return tree_add(m->r, parent, "bsdf", type, NULL);
+}
+
+static bool add_thin(const struct making *m, struct xml_node *parent) {
+    struct xml_node *node = start(m, parent, "principledthin");
+    if (m->metallic > 0 && texture_of(m, m->pbr, "metallicRoughnessTexture"))
+        gltf_warn(m->g, "thin sheets that transmit have no metallic part here");
+    tree_number(m->r, node, "eta", fmax(m->eta, 0.01));
+    const double strength = gltf_number(m->transmission, "transmissionFactor", 0);
+    return add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
+           add_number(m, node, "spec_trans", strength,
+                      texture_of(m, m->transmission, "transmissionTexture"), "r");
+}
+
+static bool add_solid(const struct making *m, struct xml_node *parent) {
+    struct xml_node *node = start(m, parent, "principled");
+    const struct json *info = texture_of(m, m->pbr, "metallicRoughnessTexture");
+    tree_number(m->r, node, "eta", m->eta);
+    add_sheen(m, node);
+    const double strength = gltf_number(m->transmission, "transmissionFactor", 0);
+    return add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
+           add_number(m, node, "metallic", m->metallic, info, "b") && add_clearcoat(m, node) &&
+           (strength == 0 ||
+            add_number(m, node, "spec_trans", strength,
+                       texture_of(m, m->transmission, "transmissionTexture"), "r"));
+}
+
+// A stretched metal: principled cannot stretch as far as glTF does.
+static bool add_brushed_metal(const struct making *m, struct xml_node *parent) {
+    double alpha[2];
+    widths(m, alpha);
+    warn_of_turn(m);
+    struct xml_node *node = start(m, parent, "roughconductor");
+    tree_text(m->r, node, "string", "distribution", "ggx");
+    tree_text(m->r, node, "string", "material", "none");
+    tree_number(m->r, node, "alpha_u", alpha[0]);
+    tree_number(m->r, node, "alpha_v", alpha[1]);
+    return add_base_colour(m, node, "specular_reflectance");
+}
+
+// KHR_materials_volume: attenuationColor is what is left after attenuationDistance.
+static void make_interior(const struct making *m) {
+    double colour[3] = {1, 1, 1}, absorption[3];
+    const double distance = gltf_number(m->volume, "attenuationDistance", INFINITY);
+    if (!gltf_numbers(m->volume, "attenuationColor", 3, colour) || !isfinite(distance) ||
+        is_white(colour, 3))
+        return;
+    for (int k = 0; k < 3; k++)
+        absorption[k] = -log(fmax(colour[k], 1e-6)) / distance;
+    struct xml_node *medium = tree_add(m->r, NULL, "medium", "homogeneous", NULL);
+    xml_set(medium, "name", "interior", m->r->arena);
+    tree_triple(m->r, medium, "rgb", "sigma_a", absorption);
+    tree_text(m->r, medium, "rgb", "sigma_s", "0 0 0");
+    m->out->interior = medium;
+}
+
+// The share that is there: alpha of colour, texture and vertices.
+static bool add_opacity(const struct making *m, struct xml_node *node) {
+    const char *name = "opacity", *mode = json_text(json_get(m->material, "alphaMode"));
+    if (strcmp(mode, "MASK") == 0) {
+        struct xml_node *step = tree_add(m->r, node, "texture", "step", NULL);
+        xml_set(step, "name", name, m->r->arena);
+        tree_number(m->r, step, "threshold", gltf_number(m->material, "alphaCutoff", 0.5));
+        node = step;
+        name = "value";
+    }
+    if (m->colour_channels == 4)
+        node = under_attribute(m, node, &name, "vertex_alpha");
+    return add_number(m, node, name, m->base[3], texture_of(m, m->pbr, "baseColorTexture"), "a");
+}
+
+static bool has_alpha(const struct making *m) {
+    const char *mode = json_text(json_get(m->material, "alphaMode"));
+    return mode && (strcmp(mode, "MASK") == 0 || strcmp(mode, "BLEND") == 0) &&
+           (m->base[3] != 1 || m->colour_channels == 4 || json_get(m->pbr, "baseColorTexture"));
+}
+
+// normalmap with xy scaled about 0.5 where the file asks for that
+static bool add_normal_map(const struct making *m, struct xml_node *node,
+                           const struct json *info) {
+    const double s = gltf_number(info, "scale", 1);
+    struct gltf_texture_use use = {"normalmap", NULL, true};
+    if (s == 1 || s < 0)
+        return gltf_add_texture(m->g, m->r, node, info, &use);
+    const double factor[3] = {s, s, 1}, offset[3] = {(1 - s) / 2, (1 - s) / 2, 0};
+    struct xml_node *product = tree_add(m->r, node, "texture", "product", NULL);
+    xml_set(product, "name", "normalmap", m->r->arena);
+    tree_triple(m->r, product, "rgb", "texture_1", factor);
+    tree_triple(m->r, product, "rgb", "offset", offset);
+    use.name = "texture_0";
+    return gltf_add_texture(m->g, m->r, product, info, &use);
+}
+
+static bool transmits(const struct making *m) {
+    return gltf_number(m->transmission, "transmissionFactor", 0) > 0;
+}
+
+static bool add_surface(const struct making *m, struct xml_node *parent) {
+    const bool thick = gltf_number(m->volume, "thicknessFactor", 0) > 0;
+    const bool metal = m->metallic == 1 && !json_get(m->pbr, "metallicRoughnessTexture");
+    if (transmits(m) && !thick)
+        return add_thin(m, parent);
+    if (transmits(m))
+        make_interior(m);
+    if (m->anisotropy && metal && !m->clearcoat)
+        return add_brushed_metal(m, parent);
+    return add_solid(m, parent);
+}
+
+// mask ( normalmap ( twosided ( surface ) ) ) as far as each is needed
+static bool add_layers(const struct making *m, struct xml_node *outer) {
+    struct xml_node *node = outer;
+    if (has_alpha(m)) {
+        node = start(m, node, "mask");
+        if (!add_opacity(m, node))
+            return false;
+    }
+    const bool two_sided = !transmits(m);
+    const struct json *normal = texture_of(m, m->material, "normalTexture");
+    if (two_sided)
+        node = start(m, node, "twosided");
+    if (normal) {
+        node = start(m, node, "normalmap");
+        if (!add_normal_map(m, node, normal))
+            return false;
+    }
+    return add_surface(m, node);
+}
+
+// ---- reading --------------------------------------------------------------------------------
+
+static void warn_of_extensions(const struct making *m) {
+    static const char *const unknown[] = {
+        "KHR_materials_dispersion", "KHR_materials_iridescence", "KHR_materials_unlit",
+        "KHR_materials_pbrSpecularGlossiness", "KHR_materials_diffuse_transmission"};
+    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
+        if (gltf_extension(m->material, unknown[i]))
+            gltf_warn(m->g, "%s is not used", unknown[i]);
+}
+
+static void read_factors(struct making *m) {
+    const struct json *material = m->material;
+    m->pbr = json_get(material, "pbrMetallicRoughness");
+    m->transmission = gltf_extension(material, "KHR_materials_transmission");
+    m->volume = gltf_extension(material, "KHR_materials_volume");
+    m->clearcoat = gltf_extension(material, "KHR_materials_clearcoat");
+    m->sheen = gltf_extension(material, "KHR_materials_sheen");
+    m->anisotropy = gltf_extension(material, "KHR_materials_anisotropy");
+    m->specular = gltf_extension(material, "KHR_materials_specular");
+    for (int k = 0; k < 4; k++)
+        m->base[k] = 1;
+    gltf_numbers(m->pbr, "baseColorFactor", 4, m->base);
+    m->metallic = gltf_number(m->pbr, "metallicFactor", 1);
+    m->roughness = gltf_number(m->pbr, "roughnessFactor", 1);
+    m->eta = gltf_number(gltf_extension(material, "KHR_materials_ior"), "ior", 1.5);
+    if (m->eta == 0) // a reflectance of 1 for old workflows
+        m->eta = index_of(0.98);
+    m->eta = fmin(m->eta, 100);
+    apply_specular(m);
+}
+
+static void read_emission(const struct making *m) {
+    struct gltf_material *out = m->out;
+    gltf_numbers(m->material, "emissiveFactor", 3, out->emission);
+    out->emission_texture = texture_of(m, m->material, "emissiveTexture");
+    const double strength = gltf_number(
+        gltf_extension(m->material, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
+    for (int k = 0; k < 3; k++) {
+        out->emission[k] = fmin(out->emission[k] * strength, 1e30);
+        out->emits |= out->emission[k] > 0;
+    }
+}
+
+// The set that the base colour is looked up by, else that of the first other texture.
+static int main_uv_set(const struct json *material) {
+    const struct json *pbr = json_get(material, "pbrMetallicRoughness");
+    const struct json *infos[] = {json_get(pbr, "baseColorTexture"),
+                                  json_get(material, "emissiveTexture"),
+                                  json_get(material, "normalTexture"),
+                                  json_get(pbr, "metallicRoughnessTexture")};
+    for (size_t i = 0; i < sizeof infos / sizeof *infos; i++)
+        if (infos[i])
+            return (int)gltf_number(gltf_extension(infos[i], "KHR_texture_transform"), "texCoord",
+                                    gltf_number(infos[i], "texCoord", 0));
+    return 0;
+}
+
+bool gltf_make_material(struct gltf *g, struct reader *r, struct xml_node *scene, int64_t index,
+                        int colour_channels, struct gltf_material *out) {
+    const struct json *material = index < 0 ? NULL : gltf_item(g, "materials", (size_t)index);
+    struct making m = {.g = g, .r = r, .material = material, .colour_channels = colour_channels,
+                       .out = out};
+    *out = (struct gltf_material){.wants.uv_set = main_uv_set(material)};
+    read_factors(&m);
+    read_emission(&m);
+    warn_of_extensions(&m);
+    const char *kind = arena_printf(g->arena, "glTF material with %d vertex colours",
+                                    colour_channels);
+    const char *key = arena_printf(g->arena, "%lld", (long long)index);
+    struct gltf_material *known = arena_find(g->arena, kind, key);
+    if (known) {
+        *out = *known;
+        return true;
+    }
+    struct xml_node holder = {0};
+    if (!add_layers(&m, &holder))
+        return false;
+    const char *name = json_text(json_get(material, "name"));
+    out->id = tree_free_id(r, name, index < 0 ? "default material"
+                                              : arena_printf(g->arena, "materials.%s", key));
+    xml_set(holder.first, "id", out->id, r->arena);
+    xml_append(scene, holder.first);
+    if (!id_define(r, out->id, holder.first, holder.first->at))
+        return false;
+    known = arena_alloc(g->arena, sizeof *known);
+    *known = *out;
+    arena_keep(g->arena, kind, key, known);
+    return true;
+}
