@@ -53,16 +53,6 @@ static void write_head(const struct study *study, FILE *f) {
     }
 }
 
-static void write_plots(const struct study *study, FILE *f) {
-    static const enum study_axis order[] = {STUDY_SECONDS, STUDY_ALONG, STUDY_BYTES};
-    fprintf(f, "<div class=\"plots\">\n");
-    for (int i = 0; i < STUDY_AXES; i++)
-        if (study_has_axis(study, order[i]))
-            study_plot(study, order[i], PLOT_WIDTH, PLOT_HEIGHT, f);
-    fprintf(f, "</div>\n<p>Bars are 95 %% confidence intervals; ringed points are on the Pareto front. "
-               "Lines are least squares through the logarithms, slopes with their standard errors.</p>\n");
-}
-
 static void write_exponent(bool known, const struct line_fit *fit, FILE *f) {
     if (known)
         fprintf(f, "<td>%.3f ± %.3f</td>", fit->slope, fit->slope_error);
@@ -71,7 +61,7 @@ static void write_exponent(bool known, const struct line_fit *fit, FILE *f) {
 }
 
 static void write_exponents(const struct study *study, FILE *f) {
-    fprintf(f, "<h2>Exponents</h2>\n<table><tr><th>series</th>");
+    fprintf(f, "<div><h2>Exponents</h2>\n<table><tr><th>series</th>");
     if (study->along >= 0) {
         const char *name = study->options->factors->items[study->along].name;
         fprintf(f, "<th>relMSE over %s</th><th>variance over %s</th>", name, name);
@@ -90,7 +80,18 @@ static void write_exponents(const struct study *study, FILE *f) {
         write_exponent(s->fitted[STUDY_BYTES], &s->fits[STUDY_BYTES], f);
         fprintf(f, "</tr>\n");
     }
-    fprintf(f, "</table>\n<p>Given where three points or more span a factor of 1.5.</p>\n");
+    fprintf(f, "</table>\n<p>Given where three points or more span a factor of 1.5.</p></div>\n");
+}
+
+static void write_plots(const struct study *study, FILE *f) {
+    static const enum study_axis order[] = {STUDY_SECONDS, STUDY_ALONG, STUDY_BYTES};
+    fprintf(f, "<div class=\"plots\">\n");
+    for (int i = 0; i < STUDY_AXES; i++)
+        if (study_has_axis(study, order[i]))
+            study_plot(study, order[i], PLOT_WIDTH, PLOT_HEIGHT, f);
+    write_exponents(study, f);
+    fprintf(f, "</div>\n<p>Bars are 95 %% confidence intervals; ringed points are on the Pareto front. "
+               "Lines are least squares through the logarithms, slopes with their standard errors.</p>\n");
 }
 
 static void write_row(const struct study *study, const struct study_point *p, FILE *f) {
@@ -154,7 +155,6 @@ bool study_write_html(const struct study *study, const char *path) {
     }
     write_head(study, f);
     write_plots(study, f);
-    write_exponents(study, f);
     write_table(study, f);
     write_pictures(study, f);
     fclose(f);

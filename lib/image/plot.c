@@ -46,7 +46,8 @@ static void widen(struct axis *a, double v) {
 static void finish_axis(struct axis *a) {
     if (a->low > a->high)
         a->low = a->high = 0;
-    const double margin = fmax(0.06 * (a->high - a->low), 0.12);
+    const double span = a->high - a->low; // less than a decade would make much of small differences
+    const double margin = fmax(fmax(0.06 * span, 0.12), 0.5 * (1 - span));
     a->low -= margin;
     a->high += margin;
 }
@@ -105,8 +106,7 @@ static void draw_ticks(const struct axis *a, bool is_x, const struct axis *other
     for (int e = (int)floor(a->low); e <= (int)floor(a->high) && decades < MOST_TICKS; e++)
         for (int m = 1; m <= 9; m++) {
             const double v = m * pow(10, e);
-            const bool labelled = (m == 1 && e % step == 0) || (decades < 2 && (m == 2 || m == 5)) ||
-                                  (decades < 0.6 && m < 7);
+            const bool labelled = (m == 1 && e % step == 0) || (decades < 2 && (m == 2 || m == 5));
             if (log10(v) >= a->low && log10(v) <= a->high && (labelled || m == 1 || decades < 8))
                 draw_tick(a, is_x, other, v, labelled, out);
         }
