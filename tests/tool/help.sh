@@ -8,6 +8,7 @@
 set -u
 relume=$(realpath "$1")
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+materials=$(dirname "$relume")/../tests # files that the build makes
 # shellcheck source=tests/tool/pictures.sh
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 
@@ -48,6 +49,11 @@ renders() {
     contains "$out" '"rejected_samples": 0'
 }
 
+# inside MEDIUM: a scene with a ball of it
+inside() {
+    scene shapes="<shape type=\"sphere\"><bsdf type=\"null\"/>$1</shape>" integrator='<integrator type="volpath"/>'
+}
+
 # put KIND XML: a scene in which the element stands where it belongs
 put() {
     local kind=$1 xml=$2
@@ -67,6 +73,9 @@ put() {
             <film type=\"hdrfilm\">$([ "$kind" = sampler ] || echo "$xml")</film>
             $([ "$kind" = filter ] || echo "$xml")</sensor>"
         ;;
+    medium) inside "${xml/<medium /<medium name=\"interior\" }" ;;
+    phase) inside "<medium type=\"homogeneous\" name=\"interior\">$xml</medium>" ;;
+    volume) inside "<medium type=\"heterogeneous\" name=\"interior\">${xml/<volume /<volume name=\"sigma_t\" }</medium>" ;;
     integrator) scene integrator="$xml" ;;
     esac
 }
@@ -84,6 +93,13 @@ fill() {
             ${xml/<\/shape>/<ref id=\"g\"\/><\/shape>}"
         ;;
     light/area) xml="<shape type=\"sphere\">$xml</shape>" ;;
+    bsdf/merl) xml=${xml//FILE/$materials/table.binary} ;;
+    bsdf/measured) xml=${xml//FILE/$materials/film.bsdf} ;;
+    bsdf/goniometer) xml=${xml//FILE/$materials/sheet.transfer} ;;
+    bsdf/window) xml=${xml//FILE/$materials/matrix.xml} ;;
+    bsdf/editable) xml=$(grep -v '"FILE"' <<<"$xml") ;;
+    light/ies) xml=${xml//FILE/$root/data/lights/type_c.ies} ;;
+    volume/gridvolume) xml=${xml//FILE/$root/data/volumes/patch_float.vol} ;;
     texture/mesh_attribute) xml=${xml//TEXT/vertex_color} ;;
     sampler/*) xml=${xml//\"sample_count\" value=\"0\"/\"sample_count\" value=\"4\"} ;;
     spectrum/*) xml=${xml//TEXT/400 700} ;;
@@ -93,7 +109,7 @@ fill() {
 
 readme=$(cat "$root/README.md")
 count=0
-for kind in shape mesh bsdf texture light sensor film filter sampler integrator spectrum; do
+for kind in shape mesh bsdf texture light medium phase volume sensor film filter sampler integrator spectrum; do
     for name in $(names $kind); do
         count=$((count + 1))
         expect 0 "$relume" help $kind "$name"
@@ -104,7 +120,7 @@ for kind in shape mesh bsdf texture light sensor film filter sampler integrator 
         contains "$readme" "\`$name\`"
     done
 done
-[ $count -ge 58 ] || fail "only $count entries are explained"
+[ $count -ge 83 ] || fail "only $count entries are explained"
 
 expect 0 "$relume" help
 contains "$out" "roughconductor"
@@ -166,6 +182,13 @@ sed 's/<scene version="3.0.0">/&<default name="spp" value="4"\/>/
     s/<film/<sampler type="sobol"><integer name="sample_count" value="$spp"\/><\/sampler>&/' \
     scene.xml >with_spp.xml && mv with_spp.xml scene.xml
 cp "$root/data/meshes/patch_text.ply" bunny.ply
+cp scene.xml room.xml
+sed -i 's/<shape type="sphere"\/>/<bsdf type="diffuse" id="floor"\/><shape type="sphere"><ref id="floor"\/><\/shape>/
+    s/<emitter type="constant"\/>/<emitter type="constant" id="sky"\/><emitter type="point" id="lamp"\/>/' room.xml
+cp scene.xml car.xml
+cp "$materials/film.bsdf" . && "$relume" brdf diffuse --to gold.binary >log
+"$relume" render scene.xml -o grace.exr --size 32x16 --quiet
+"$relume" precompute relight car.xml -o car.safetensors --basis pixels:32x16 --spp 64 --quiet
 "$relume" render scene.xml -o big.exr --size 32x32 --quiet
 "$relume" render scene.xml -o room.exr --size 16x16 --aov albedo --quiet
 for name in $(names subcommand); do
