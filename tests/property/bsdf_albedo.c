@@ -67,7 +67,7 @@ static void measure_direction(const struct object *o, int angle, bool inside, st
         a->value[angle] = e;
     a->low = fmin(a->low, e);
     a->high = fmax(a->high, e);
-    a->accuracy = fmax(a->accuracy, fabs(x - y));
+    a->accuracy = fmax(a->accuracy, fabs(x - y) / fmax(e, 1));
     const double estimate = (double)spectrum_mean(closure_albedo(c));
     if (fabs(estimate - e) > fabs(a->worst_estimate))
         a->worst_estimate = estimate - e;

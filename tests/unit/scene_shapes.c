@@ -206,9 +206,6 @@ static void faults(void) {
                 "a second bsdf in one shape");
     check_fault("<shape type='cube'><emitter type='area'/><emitter type='area'/></shape>",
                 "a second emitter in one shape");
-    check_fault("<shape type='cube'><medium type='homogeneous' name='interior'/></shape>",
-                "participating media (<medium>) are not supported yet");
-    check_fault("<medium type='homogeneous' id='m'/>", "participating media");
     check_fault("<shape type='cube'><sensor type='perspective'/></shape>",
                 "a <sensor> cannot stand in a shape");
     check_fault("<shape type='instance'/>", "an instance holds exactly one shapegroup");
