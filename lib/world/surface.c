@@ -62,17 +62,21 @@ static vec3 to_vec3(const double a[3]) {
     return v3((float)a[0], (float)a[1], (float)a[2]);
 }
 
-// In double: the point is put back onto the shape, so only its rounding to float is left.
+// In double: the point is put back onto the shape, so only its rounding to float is left. In the
+// space of its group where `instance` is not NULL.
 static void quadric_shading(enum shape_kind kind, const struct world_transform *x,
-                            const struct ray *ray, float t, struct surface *s) {
-    double world[3], p[3], n[3], uv[2], du[3], dv[3], v[3];
+                            const struct world_transform *instance, const struct ray *ray, float t,
+                            struct surface *s) {
+    double world[3], place[3], p[3], n[3], uv[2], du[3], dv[3], v[3];
     for (int i = 0; i < 3; i++)
-        world[i] = (double)ray->o[i] + (double)t * (double)ray->d[i];
-    transform_point(&x->to_object, world, p);
+        place[i] = world[i] = (double)ray->o[i] + (double)t * (double)ray->d[i];
+    if (instance)
+        transform_point(&instance->to_object, world, place);
+    transform_point(&x->to_object, place, p);
     quadric_project(kind, p);
     quadric_surface(kind, p, n, uv, du, dv);
-    transform_point(&x->to_world, p, world);
-    s->p = to_vec3(world);
+    transform_point(&x->to_world, p, place);
+    s->p = to_vec3(place);
     s->p_error = GAMMA_3 * absolute(s->p) + x->error;
     transform_normal(&x->to_object, n, v);
     s->ng = normalize(to_vec3(v));
@@ -107,12 +111,15 @@ void world_surface(const struct world *w, const struct ray *ray, const struct ac
     s->primitive = hit->primitive;
     s->instance = hit->instance;
     s->point.wavelengths.count = 0;
+    const struct world_transform *instance =
+        hit->instance != SCENE_NONE ? &w->instances[hit->instance] : NULL;
     if (shape->kind == SHAPE_MESH)
         triangle_surface(shape, hit, w->tangents_matter, s);
     else
-        quadric_shading((enum shape_kind)shape->kind, &w->quadrics[hit->shape], ray, hit->t, s);
-    if (hit->instance != SCENE_NONE)
-        apply_instance(&w->instances[hit->instance], s);
+        quadric_shading((enum shape_kind)shape->kind, &w->quadrics[hit->shape], instance, ray,
+                        hit->t, s);
+    if (instance)
+        apply_instance(instance, s);
     if (shape->flip_normals) {
         s->ng = -s->ng;
         s->point.frame.n = -s->point.frame.n;

@@ -202,6 +202,11 @@ int main(void) {
         "<rotate x='1' y='1' angle='20'/><translate x='5'/></transform></shape>",
         "<shape type='disk'><transform name='to_world'><rotate x='1' y='2' angle='50'/>"
         "<translate x='3' y='1'/></transform></shape>",
+        "<shape type='shapegroup' id='g'><shape type='sphere'><point name='center' x='2' y='1'/>"
+        "</shape><shape type='disk'/></shape><shape type='instance'><ref id='g'/>"
+        "<transform name='to_world'><rotate x='1' y='2' z='3' angle='77'/><scale value='0.6'/>"
+        "<translate x='-2' y='-1' z='1'/></transform></shape>"
+        "<shape type='instance'><ref id='g'/></shape>",
     };
     for (size_t i = 0; i < sizeof quadrics / sizeof *quadrics; i++) {
         const struct counts n = count(quadrics[i], true);
