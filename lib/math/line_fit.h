@@ -9,8 +9,10 @@ struct line_fit {
     double slope_error; // standard error; NaN: not known
 };
 
-// Least squares of y over x. errors: standard errors of y (NaN: not known), or NULL. The slope's error
-// is the larger of what they and what the scatter about the line say (the latter needs 3 points).
+// Least squares of y over x. errors: standard errors of y, or NULL; if all are known, points of larger
+// error count less: weights are 1 / (error^2 + median error^2), since errors are estimates themselves.
+// The slope's error is the larger of what they and what the scatter about the line say (the latter
+// needs 3 points).
 // false: fewer than two different x.
 bool line_fit(const double *x, const double *y, const double *errors, int count,
               struct line_fit *out);

@@ -133,6 +133,12 @@ static void line_fit_finds_slope_and_error(void) {
     CHECK(line_fit(x, off, NULL, 4, &f)); // residuals -0.02, 0.04, ... by hand: slope -2.02
     CHECK_NEAR(f.slope, -2.02, 1e-12);
     CHECK_NEAR(f.slope_error, sqrt(0.018 / 2 / 5), 1e-12);
+    const double wild[] = {1, -1, 2, -5}, known[] = {0.1, 0.1, 1000, 0.1}; // a point far off
+    CHECK(line_fit(x, wild, known, 4, &f));
+    CHECK_NEAR(f.slope, -2, 1e-4);
+    CHECK(f.slope_error > 0.03 && f.slope_error < 0.1);
+    CHECK(line_fit(x, y, (const double[]){0.1, 0.1, 0.1, NAN}, 4, &f)); // not weighted
+    CHECK_NEAR(f.slope, -2, 1e-12);
     CHECK(line_fit(x, y, NULL, 2, &f) && isnan(f.slope_error));
     CHECK(!line_fit(x, y, e, 1, &f));
     CHECK(!line_fit((const double[]){2, 2}, y, e, 2, &f));
