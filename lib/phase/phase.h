@@ -22,6 +22,8 @@ struct deflection {
 
 struct phase_type {
     struct entry entry;
+    // Checks the parameters and builds tables. false after an error message. NULL: nothing to do.
+    bool (*prepare)(struct object *self, struct arena *arena);
     float (*pdf_sa)(const void *data, vec3 p, struct deflection c);
     // u1 chooses between parts, u2 the deflection; all in [0, 1).
     struct deflection (*sample)(const void *data, vec3 p, float u1, float u2);

@@ -4,6 +4,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "phase/phase.h"
 #include "world/unseen.h"
 
 // Measured with tests/bench/packets: bounces of 16 lanes as a packet against single rays.
@@ -89,6 +90,11 @@ static bool prepare_media(struct world *w, struct scene *s) {
     for (uint32_t i = 0; i < s->volume_count; i++) {
         const struct volume_type *type = volume_type_of(s->volumes[i]);
         if (type->prepare && !type->prepare(s->volumes[i], s->centre, &s->arena))
+            return false;
+    }
+    for (uint32_t i = 0; i < s->phase_count; i++) {
+        const struct phase_type *type = phase_type_of(s->phases[i]);
+        if (type->prepare && !type->prepare(s->phases[i], &s->arena))
             return false;
     }
     w->media = mem_array(s->medium_count, sizeof *w->media);

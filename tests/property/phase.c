@@ -26,6 +26,9 @@ static const struct {
     {"hg", "g=-0.99"},
     {"rayleigh", NULL},
     {"blendphase", "weight=0.25"},
+    {"tabphase", "values=1,1"},
+    {"tabphase", "values=0.5,1.0,1.5,4"},
+    {"tabphase", "values=3,0,0,1,0"},
 };
 
 // Both ends of [0, 2] finely: 1 - cosine for x in [0, 1].
@@ -110,8 +113,10 @@ static struct object *make(struct arena *arena, const char *name, const char *pa
     const struct object *forward = make_object(arena, &phases, "hg", "g=0.8", NULL);
     const struct object *back = make_object(arena, &phases, "hg", "g=-0.5", NULL);
     const struct object *const parts[] = {forward, back, NULL};
-    return make_object(arena, &phases, name, parameters,
-                       strcmp(name, "blendphase") == 0 ? parts : NULL);
+    struct object *o = make_object(arena, &phases, name, parameters,
+                                   strcmp(name, "blendphase") == 0 ? parts : NULL);
+    CHECK(!phase_type_of(o)->prepare || phase_type_of(o)->prepare(o, arena));
+    return o;
 }
 
 // Every entry has a case above.

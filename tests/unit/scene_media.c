@@ -103,6 +103,18 @@ static void test_world_refusals(void) {
     } cases[] = {
         {"<medium type='homogeneous'><float name='sigma_t' value='1'/>"
          "<float name='sigma_s' value='1'/></medium>", "expected one of"},
+        {"<medium type='homogeneous'><phase type='tabphase'><string name='values' value='1,2,x'/>"
+         "</phase></medium>", "value 3 is \"x\""},
+        {"<medium type='homogeneous'><phase type='tabphase'><string name='values' value='1,-1'/>"
+         "</phase></medium>", "value 2 is \"-1\""},
+        {"<medium type='homogeneous'><phase type='tabphase'><string name='values' value='1 2e40'/>"
+         "</phase></medium>", "value 2 is \"2e40\""},
+        {"<medium type='homogeneous'><phase type='tabphase'><string name='values' value='3'/>"
+         "</phase></medium>", "1 values; expected at least two"},
+        {"<medium type='homogeneous'><phase type='tabphase'><string name='values' value='0,0'/>"
+         "</phase></medium>", "not all 0"},
+        {"<medium type='homogeneous'><phase type='tabphase'><string name='values' value=' , '/>"
+         "</phase></medium>", "0 values"},
         {"<medium type='homogeneous'><string name='material' value='Ketchop'/></medium>",
          "did you mean \"Ketchup\""},
         {"<medium type='heterogeneous'><volume type='gridvolume' name='sigma_t'>"
