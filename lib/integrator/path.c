@@ -215,45 +215,69 @@ static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const 
 
 // The next hits of a packet's lanes: the camera's rays together, later ones where that pays.
 static void find_hits(struct trace_context *ctx, const struct lane *lanes, const struct packet *p,
-                      bool camera, struct accel_hit hits[SINK_LANES]) {
+                      bool camera, struct accel_hit *hits) {
     const struct accel *accel = ctx->world->accel;
     ctx->rays += (uint64_t)p->count;
     if (camera || accel_mixes_packets(accel) ||
         (ctx->world->packets_pay && p->count >= LEAST_IN_PACKET)) {
         struct ray rays[SINK_LANES];
+        struct accel_hit found[SINK_LANES];
         for (int i = 0; i < SINK_LANES; i++)
             rays[i] = lanes[p->lanes[i < p->count ? i : 0]].ray;
-        accel_intersect16(accel, rays, (1u << p->count) - 1, camera, hits);
+        accel_intersect16(accel, rays, (1u << p->count) - 1, camera, found);
+        for (int i = 0; i < p->count; i++)
+            hits[p->lanes[i]] = found[i];
         return;
     }
     for (int i = 0; i < p->count; i++)
-        accel_intersect(accel, &lanes[p->lanes[i]].ray, &hits[i]);
+        accel_intersect(accel, &lanes[p->lanes[i]].ray, &hits[p->lanes[i]]);
 }
 
-// One vertex of every living lane.
+// What comes of a vertex does not depend on other lanes, so those that shade alike go together.
+static void shade_all(const struct path *p, struct trace_context *ctx, struct wave *w,
+                      const struct accel_hit *hits) {
+    uint16_t lambert[MOST_LANES], others[MOST_LANES];
+    uint32_t alike = 0, rest = 0, done = 0;
+    for (uint32_t k = 0; k < w->count; k++) {
+        const uint16_t i = w->alive[k];
+        struct lane *l = &w->lanes[i];
+        l->shadow.pending = false;
+        if (hits[i].shape == SCENE_NONE)
+            leave_scene(p, ctx, i, l);
+        else if (path_is_lambert(ctx, l, &hits[i]))
+            lambert[alike++] = i;
+        else
+            others[rest++] = i;
+    }
+    while (alike - done >= LEAST_IN_PACKET) {
+        const uint32_t left = alike - done;
+        const struct packet group = {lambert + done, left < SINK_LANES ? (int)left : SINK_LANES};
+        path_shade_lambert(p, ctx, w->lanes, &group, hits);
+        done += (uint32_t)group.count;
+    }
+    while (done < alike)
+        others[rest++] = lambert[done++];
+    for (uint32_t k = 0; k < rest; k++)
+        shade(p, ctx, others[k], &w->lanes[others[k]], &hits[others[k]]);
+}
+
+// One vertex of every living lane, stage by stage.
 static void advance(const struct path *p, struct trace_context *ctx, struct wave *w, bool camera) {
+    struct accel_hit hits[MOST_LANES]; // by lane
     uint16_t pending[MOST_LANES];
     uint32_t survivors = 0, tests = 0;
     struct packet packet;
     for (uint32_t first = 0; first < w->count; first += (uint32_t)packet.count) {
-        struct accel_hit hits[SINK_LANES];
         packet = packet_at(ctx->world, w->alive, w->count, first);
         find_hits(ctx, w->lanes, &packet, camera, hits);
-        for (int k = 0; k < packet.count; k++)
-            w->lanes[packet.lanes[k]].shadow.pending = false;
-        const uint32_t done = path_shade_lambert(p, ctx, w->lanes, &packet, hits);
-        for (int k = 0; k < packet.count; k++) {
-            const uint16_t i = packet.lanes[k];
-            struct lane *l = &w->lanes[i];
-            if (hits[k].shape == SCENE_NONE)
-                leave_scene(p, ctx, i, l);
-            else if (!(done >> k & 1))
-                shade(p, ctx, i, l, &hits[k]);
-            if (l->shadow.pending)
-                pending[tests++] = i;
-            if (l->alive)
-                w->alive[survivors++] = i; // never ahead of what is read
-        }
+    }
+    shade_all(p, ctx, w, hits);
+    for (uint32_t k = 0; k < w->count; k++) {
+        const uint16_t i = w->alive[k];
+        if (w->lanes[i].shadow.pending)
+            pending[tests++] = i;
+        if (w->lanes[i].alive)
+            w->alive[survivors++] = i; // never ahead of what is read
     }
     w->count = survivors;
     finish_shadows(ctx, w->lanes, pending, tests, camera);

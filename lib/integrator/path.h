@@ -48,7 +48,14 @@ static inline bool path_may_contribute(const struct path *p, uint32_t edges) {
     return p->max_depth < 0 || edges < (uint32_t)p->max_depth;
 }
 
-// One vertex of those lanes of a packet that met a Lambertian triangle, as far as it is worth it:
-// the same as one by one, with the same bits. A bit for every lane that is done.
-uint32_t path_shade_lambert(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                            const struct packet *packet, const struct accel_hit *hits);
+// Whether path_shade_lambert can shade a hit.
+static inline bool path_is_lambert(const struct trace_context *ctx, const struct lane *l,
+                                   const struct accel_hit *hit) {
+    return ctx->world->shapes[hit->shape].reflectance && !ctx->world->tangents_matter &&
+           ctx->response == &response_physical && (l->first_done || !ctx->sink->wants_surface);
+}
+
+// One vertex of a packet's lanes, which all met Lambertian triangles: the same as one by one, with
+// the same bits. hits: by lane.
+void path_shade_lambert(const struct path *p, struct trace_context *ctx, struct lane *lanes,
+                        const struct packet *packet, const struct accel_hit *hits);

@@ -23,10 +23,6 @@ struct vertices {
     wide_mask two_sided;
 };
 
-static bool shades(const struct trace_context *ctx, const struct lane *l, const struct accel_hit *hit) {
-    return hit->shape != SCENE_NONE && ctx->world->shapes[hit->shape].reflectance &&
-           (l->first_done || !ctx->sink->wants_surface);
-}
 
 // Four numbers of each lane, at an offset in struct lane.
 static void gather(const struct vertices *v, size_t offset, wide f[4]) {
@@ -277,35 +273,22 @@ static uint32_t scatter(const struct path *p, struct vertices *v, uint32_t wante
     return alive;
 }
 
-// Chooses the lanes; false when they are too few to be worth it.
-static bool choose(struct vertices *v, struct trace_context *ctx, struct lane *lanes,
-                   const struct packet *packet, const struct accel_hit *hits) {
-    int any = 0;
-    v->active = 0;
-    if (ctx->response != &response_physical || ctx->world->tangents_matter)
-        return false;
-    for (int i = 0; i < packet->count; i++)
-        if (shades(ctx, &lanes[packet->lanes[i]], &hits[i])) {
-            v->active |= 1u << i;
-            any = i;
-        }
-    if (__builtin_popcount(v->active) < LEAST_IN_PACKET)
-        return false;
+static void choose(struct vertices *v, struct lane *lanes, const struct packet *packet,
+                   const struct accel_hit *hits) {
+    v->active = (1u << packet->count) - 1;
     for (int i = 0; i < WIDE_LANES; i++) {
-        const int from = v->active >> i & 1 ? i : any;
-        v->lane[i] = &lanes[packet->lanes[from]];
-        v->to[i] = v->active >> i & 1 ? v->lane[i] : &v->spare;
+        const uint16_t from = packet->lanes[i < packet->count ? i : 0];
+        v->lane[i] = &lanes[from];
+        v->to[i] = i < packet->count ? v->lane[i] : &v->spare;
         v->hit[i] = &hits[from];
     }
-    return true;
 }
 
-uint32_t path_shade_lambert(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                            const struct packet *packet, const struct accel_hit *hits) {
+void path_shade_lambert(const struct path *p, struct trace_context *ctx, struct lane *lanes,
+                        const struct packet *packet, const struct accel_hit *hits) {
     struct vertices v;
     struct surfaces s;
-    if (!choose(&v, ctx, lanes, packet, hits))
-        return 0;
+    choose(&v, lanes, packet, hits);
     gather_lanes(&v);
     gather_materials(ctx->world, &v);
     world_surfaces(ctx->world, v.hit, &s);
@@ -333,5 +316,4 @@ uint32_t path_shade_lambert(const struct path *p, struct trace_context *ctx, str
             ctx->truncated++;
         }
     }
-    return v.active;
 }
