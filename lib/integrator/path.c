@@ -191,7 +191,7 @@ static void finish_as_packet(struct trace_context *ctx, struct lane *lanes, cons
     ctx->shadow_rays += (uint64_t)p->count;
     for (int i = 0; i < p->count; i++)
         if (!(blocked >> i & 1))
-            sink_add(ctx->sink, p->lanes[i], &lanes[p->lanes[i]].shadow.contribution);
+            vertex_add_light(ctx, p->lanes[i], &lanes[p->lanes[i]].shadow);
 }
 
 // The shadow rays of one vertex of the lanes listed. Packets depend on the lanes alone, never on a

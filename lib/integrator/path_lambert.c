@@ -108,6 +108,7 @@ struct light_lanes {
     struct light_samples s;
     spectrum emission[WIDE_LANES];
     uint32_t light[WIDE_LANES];
+    uint32_t late;
     bool shared; // the light with index 0, and s.emission, are those of all
 };
 
@@ -129,7 +130,7 @@ static uint32_t sample_lights(struct trace_context *ctx, const struct vertices *
     wide u[2], choice[2] = {{0}, {0}};
     uint32_t lit = 0;
     draw(v, DRAW_LIGHT_POINT, u);
-    *delta = 0;
+    *delta = out->late = 0;
     if (w->light_count == 1 && !w->choice.by_part && w->lights[0].type->has_wide &&
         w->lights[0].type->has_wide(w->lights[0].data)) {
         lit = wanted & wide_bits(w->lights[0].type->sample_wide(w->lights[0].data, &s->p, u, &out->s));
@@ -149,6 +150,7 @@ static uint32_t sample_lights(struct trace_context *ctx, const struct vertices *
         set_sample(out, i, &l);
         lit |= 1u << i;
         *delta |= (uint32_t)l.delta << i;
+        out->late |= (uint32_t)l.late << i;
     }
     return lit;
 }
@@ -212,7 +214,8 @@ static void light(const struct path *p, struct trace_context *ctx, struct vertic
         struct contribution *c = &to->shadow.contribution;
         c->emission = l.shared ? l.s.emission : l.emission[i];
         c->source = l.shared ? 0 : l.light[i];
-        if (spectrum_is_black(c->emission))
+        to->shadow.late = l.late >> i & 1;
+        if (!to->shadow.late && spectrum_is_black(c->emission))
             continue;
         c->depth = v->depth[i] + 1;
         c->lobe = v->depth[i] ? v->lobe[i] : LOBE_DIFFUSE | LOBE_REFLECTION;

@@ -48,13 +48,22 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
     if (!world_sample_light(ctx->world, &place, u1, u2, &index, &l))
         return;
     const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf_bsdf);
-    if (spectrum_is_black(f) || spectrum_is_black(l.emission))
+    if (spectrum_is_black(f) || (!l.late && spectrum_is_black(l.emission)))
         return;
     const float share = l.delta ? 1 : mis_weight(l.pdf_sa, rivals * pdf_bsdf);
     test->contribution = (struct contribution){.weight = f * (share / l.pdf_sa), .emission = l.emission,
                                                .source = index, .wi = l.wi};
     test->ray = world_shadow_ray(s, &l);
+    test->late = l.late;
     test->pending = true;
+}
+
+void vertex_add_light(struct trace_context *ctx, int lane, struct shadow_test *test) {
+    struct contribution *c = &test->contribution;
+    if (test->late)
+        c->emission = light_late_emission(&ctx->world->lights[c->source], c->wi);
+    if (!test->late || !spectrum_is_black(c->emission))
+        sink_add(ctx->sink, lane, c);
 }
 
 void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test *test) {
@@ -64,7 +73,7 @@ void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test
     if (spectrum_is_black(through))
         return;
     test->contribution.weight *= through;
-    sink_add(ctx->sink, lane, &test->contribution);
+    vertex_add_light(ctx, lane, test);
 }
 
 void vertex_add_first(struct trace_context *ctx, int lane, const struct surface *s,

@@ -44,6 +44,7 @@ struct shadow_test {
     struct contribution contribution;
     int most_passes; // straight through surfaces, each an edge of the path; negative: no limit
     bool pending;
+    bool late;       // the emission is still to be asked for
 };
 
 // Samples one light from a surface: fills the test, or leaves it not pending. `rivals` is how many
@@ -53,6 +54,8 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
                          const struct closure *closure, vec3 side, float u1, struct vec2 u2,
                          float rivals, struct shadow_test *test);
 
+// Hands out the light of a test whose ray has met nothing.
+void vertex_add_light(struct trace_context *ctx, int lane, struct shadow_test *test);
 // Runs the shadow ray of a pending test and hands out what comes through.
 void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test *test);
 

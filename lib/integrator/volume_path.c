@@ -102,14 +102,16 @@ static spectrum transmittance(struct walker *w, struct ray ray, uint32_t medium)
 // Hands out what a light sample brings: f, the density of its direction by the vertex, its ray.
 static void add_light(struct walker *w, const struct light_sample *l, uint32_t light, spectrum f,
                       float pdf_vertex, uint32_t lobe, const struct ray *ray, uint32_t medium) {
-    if (spectrum_is_black(f) || spectrum_is_black(l->emission))
+    if (spectrum_is_black(f) || (!l->late && spectrum_is_black(l->emission)))
         return;
     const spectrum through = transmittance(w, *ray, medium);
     if (spectrum_is_black(through))
         return;
+    const spectrum emission =
+        l->late ? light_late_emission(&w->ctx->world->lights[light], l->wi) : l->emission;
     const float share = l->delta ? 1 : mis_weight(l->pdf_sa, pdf_vertex);
     sink_add(w->ctx->sink, w->index,
-             &(struct contribution){throughput(w) * f * through * (share / l->pdf_sa), l->emission,
+             &(struct contribution){throughput(w) * f * through * (share / l->pdf_sa), emission,
                                     light, w->from.depth + 1, w->from.depth ? w->from.lobe : lobe,
                                     l->wi});
 }

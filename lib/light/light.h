@@ -22,6 +22,7 @@ struct light_sample {
     float pdf_sa;      // > 0
     spectrum emission; // towards the lit point
     bool delta;        // no other technique can find this light
+    bool late;         // set by who chooses the light: emission is asked for when nothing is in the way
     vec3 p, p_error;   // point on the light and its rounding error; unused when infinite
     vec3 n;            // normal there, for offsetting; zero: do not offset
 };
@@ -57,6 +58,9 @@ struct light_type {
     bool (*prepare)(struct object *self, const struct light_scene *scene, struct arena *arena);
     // false: this light cannot light that point
     bool (*sample)(const void *data, vec3 p, struct vec2 u, struct light_sample *s);
+    // sample without emission, for infinite lights whose emission takes long: most of what is
+    // sampled may be in shadow. NULL: sample is fast enough.
+    bool (*aim)(const void *data, struct vec2 u, struct light_sample *s);
     // sample for the lanes of p, with the same results; the lanes that were lit. NULL, or false from
     // has_wide: one by one.
     wide_mask (*sample_wide)(const void *data, const struct wide3 *p, const wide u[2],

@@ -36,6 +36,7 @@ struct sunsky {
     float sky_share;            // of the samples
     bool dark;                  // the sun is below the horizon, or the scales are 0
     struct distribution rows, columns[ROWS];
+    float density[ROWS][COLUMNS]; // per solid angle, of these
     float mean;                 // luminance over the sphere
     float radius;               // of the scene
 };
@@ -145,6 +146,10 @@ static double init_table(struct sunsky *s) {
         distribution_init(&s->columns[y], weights[y], COLUMNS);
     }
     distribution_init(&s->rows, sums, ROWS);
+    for (uint32_t y = 0; y < ROWS; y++)
+        for (uint32_t x = 0; x < COLUMNS; x++)
+            s->density[y][x] = distribution_pmf(&s->rows, y) * distribution_pmf(&s->columns[y], x) *
+                               (ROWS * COLUMNS / TWO_PI);
     return (double)s->sky_factor * total * (2 * M_PI / (ROWS * COLUMNS));
 }
 
@@ -228,14 +233,9 @@ static bool prepare(struct object *self, const struct light_scene *scene, struct
 
 // ---- sampling
 
-static float cell_pdf(const struct sunsky *s, int row, int column) {
-    return distribution_pmf(&s->rows, (uint32_t)row) *
-           distribution_pmf(&s->columns[row], (uint32_t)column) * (ROWS * COLUMNS / TWO_PI);
-}
-
 static float sky_pdf(const struct sunsky *s, vec3 w) {
     const int row = (int)(w[2] * ROWS), column = (int)(turn_of(w[1], w[0]) * COLUMNS);
-    return cell_pdf(s, row < ROWS ? row : ROWS - 1, column < COLUMNS ? column : COLUMNS - 1);
+    return s->density[row < ROWS ? row : ROWS - 1][column < COLUMNS ? column : COLUMNS - 1];
 }
 
 // w above the horizon; sky: the sky's density there
@@ -250,13 +250,12 @@ static vec3 sample_sky(const struct sunsky *s, struct vec2 u, float *pdf) {
     float pmf, y, x;
     const uint32_t row = distribution_sample(&s->rows, u.y, &pmf, &y);
     const uint32_t column = distribution_sample(&s->columns[row], u.x, &pmf, &x);
-    *pdf = cell_pdf(s, (int)row, (int)column);
+    *pdf = s->density[row][column];
     return cell_direction((float)row + y, (float)column + x);
 }
 
-static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample *out) {
+static bool aim(const void *data, struct vec2 u, struct light_sample *out) {
     const struct sunsky *s = data;
-    (void)p;
     if (s->dark)
         return false;
     const bool sky = u.x < s->sky_share;
@@ -269,14 +268,21 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
     if (!sky && s->sky_share > 0)
         sky_density = sky_pdf(s, w);
     *out = (struct light_sample){.wi = affine_vector(&s->world, w), .distance = INFINITY,
-                                 .pdf_sa = mixture_pdf(s, w, sky_density),
-                                 .emission = radiance(s, w)};
+                                 .pdf_sa = mixture_pdf(s, w, sky_density)};
     return out->pdf_sa > 0;
 }
 
 static spectrum emission(const void *data, const struct light_hit *hit) {
     const struct sunsky *s = data;
     return radiance(s, affine_vector(&s->local, hit->wi));
+}
+
+static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample *out) {
+    (void)p;
+    if (!aim(data, u, out))
+        return false;
+    out->emission = emission(data, &(struct light_hit){.wi = out->wi});
+    return true;
 }
 
 static float pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
@@ -304,6 +310,6 @@ const struct light_type light_sunsky = {
     .entry = {.name = "sunsky", .help = "clear sky and sun (Hosek, Wilkie 2012, 2013)",
               .params = params, .size = sizeof(struct sunsky)},
     .infinite = true,
-    .prepare = prepare, .sample = sample, .emission = emission, .pdf_sa = pdf_sa, .power = power,
+    .prepare = prepare, .sample = sample, .aim = aim, .emission = emission, .pdf_sa = pdf_sa, .power = power,
     .finish = finish,
 };

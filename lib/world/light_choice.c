@@ -194,8 +194,15 @@ static bool choose_part(const struct light_choice *c, const struct light_place *
 
 static bool sample_chosen(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
                           struct light_sample *s) {
-    return l->parts ? l->type->part_sample(l->data, part - l->first_part, p, u2, s)
-                    : l->type->sample(l->data, p, u2, s);
+    if (l->type->aim) {
+        const bool lit = l->type->aim(l->data, u2, s);
+        s->late = true;
+        return lit;
+    }
+    const bool lit = l->parts ? l->type->part_sample(l->data, part - l->first_part, p, u2, s)
+                              : l->type->sample(l->data, p, u2, s);
+    s->late = false;
+    return lit;
 }
 
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,

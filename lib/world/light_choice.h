@@ -47,10 +47,15 @@ size_t light_choice_bytes(const struct light_choice *c);
 const char *light_choice_name(const struct light_choice *c);
 
 // A point on one light as seen from a place; s->pdf_sa includes the probability of the choice.
-// false: nothing was sampled. u1 chooses; it is not used where choice->draws is false.
+// false: nothing was sampled. u1 chooses; it is not used where choice->draws is false. The emission
+// may be left for late (light_late_emission).
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
                          uint32_t count, const struct light_place *at, float u1, struct vec2 u2,
                          uint32_t *light, struct light_sample *s);
+static inline spectrum light_late_emission(const struct world_light *light, vec3 wi) {
+    return light->type->emission(light->data, &(struct light_hit){.wi = wi, .distance = INFINITY});
+}
+
 // The density with which light_choice_sample finds the point of a light that a ray has found.
 float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,
                           const struct light_place *at, const struct light_hit *hit);
