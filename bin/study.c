@@ -80,6 +80,9 @@ static int report(const struct values *v, const struct study *study) {
         log_error("stopped before any setting had two runs: there is nothing to write");
         return EXIT_FAILED;
     }
+    if (study->noisy_reference)
+        log_warn("the reference is noisy: its relMSE of %.2g is more than a fifth of the least error; "
+                 "--reference-spp asks for more samples", study->reference.noise);
     if (!study_write(study))
         return EXIT_FAILED;
     if (v->json) {

@@ -72,6 +72,7 @@ struct study {
     size_t series_count;
     int along;          // the factor that a series goes along; -1: there is none
     size_t cheapest;    // the quickest point that reaches the target; point_count: none does
+    bool noisy_reference; // its noise is no longer small against the least error
     bool misused;       // study_run failed for settings that make no sense
     bool stopped;       // some runs are missing
     struct arena arena;

@@ -128,6 +128,15 @@ static bool is_on_front(const struct study *study, const struct study_point *p, 
     return cost > 0;
 }
 
+static const double MOST_NOISE = 0.2; // of the reference, as a share of the least error
+
+static bool reference_is_noisy(const struct study *study) {
+    double least = INFINITY;
+    for (size_t i = 0; i < study->point_count; i++)
+        least = fmin(least, study->points[i].error.mse.value);
+    return study->reference.noise > MOST_NOISE * fmax(least, 0);
+}
+
 static size_t find_cheapest(const struct study *study) {
     const struct study_options *o = study->options;
     size_t best = study->point_count;
@@ -148,5 +157,6 @@ void study_analyse(struct study *study) {
         p->front_seconds = is_on_front(study, p, STUDY_SECONDS);
         p->front_bytes = is_on_front(study, p, STUDY_BYTES);
     }
+    study->noisy_reference = reference_is_noisy(study);
     study->cheapest = find_cheapest(study);
 }

@@ -11,6 +11,16 @@ static size_t pixels_of(const struct image *im) {
     return (size_t)im->width * (size_t)im->height;
 }
 
+static double noise_of(const struct study_reference *ref) {
+    const size_t n = 3 * pixels_of(&ref->rgb);
+    double sum = 0;
+    for (size_t i = 0; ref->variance.pixels && i < n; i++) {
+        const double r = (double)ref->rgb.pixels[i], v = (double)ref->variance.pixels[i];
+        sum += v > 0 && isfinite(v / (r * r + ref->eps)) ? v / (r * r + ref->eps) : 0;
+    }
+    return sum / (double)n;
+}
+
 bool study_reference_take(struct study_reference *ref, const struct image *im, const char *path) {
     *ref = (struct study_reference){.eps = 0};
     if (!image_to_rgb(im, &ref->rgb) ||
@@ -33,6 +43,7 @@ bool study_reference_take(struct study_reference *ref, const struct image *im, c
     }
     ref->mean = luminance / (double)count;
     ref->eps = 1e-3 * (sum / (3 * (double)count)) * (sum / (3 * (double)count));
+    ref->noise = noise_of(ref);
     return true;
 }
 

@@ -5,10 +5,13 @@
 #include "image/image.h"
 #include "math/repeats.h"
 
+// Its noise is taken off the errors. What this leaves is small only while the noise is: the weights
+// and the variance hang together with it where its samples are skewed.
 struct study_reference {
     struct image rgb, variance; // variance.pixels == NULL: not known, and counts as bias
     double eps;                 // 1e-3 mean(rgb)^2: errors are divided by rgb^2 + eps
     double mean;                // luminance
+    double noise;               // the relMSE that its own noise makes; 0: not known
 };
 
 // Takes colour and the layer `variance` (squared standard errors) of a picture. false after an error

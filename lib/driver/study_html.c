@@ -43,6 +43,10 @@ static void write_head(const struct study *study, FILE *f) {
     fprintf(f, "%s. relume %s.</p>\n", study->reference.variance.pixels
                ? ", whose own noise is taken off" : ", whose noise is not known and counts as bias",
             o->version);
+    if (study->noisy_reference)
+        fprintf(f, "<p class=\"answer\">The reference is noisy: its relMSE of %.2g is more than a fifth "
+                   "of the least error here. Small errors and biases are not to be trusted.</p>\n",
+                study->reference.noise);
     if (study->stopped)
         fprintf(f, "<p class=\"answer\">Stopped early: some settings or runs are missing.</p>\n");
     if (o->has_target) {

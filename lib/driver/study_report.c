@@ -146,6 +146,7 @@ struct json *study_json(const struct study *study) {
     json_add_text(j, "reference", o->reference ? o->reference : "reference.exr");
     json_add_count(j, "width", study->reference.rgb.width);
     json_add_count(j, "height", study->reference.rgb.height);
+    json_add_number(j, "reference_noise", study->reference.noise);
     json_add_bool(j, "stopped", study->stopped);
     if (o->has_target) {
         struct json *target = json_add_object(j, "target");

@@ -46,8 +46,9 @@ bool line_fit(const double *x, const double *y, const double *errors, int count,
     out->intercept = mean_y - out->slope * mean_x;
     for (int i = 0; i < count; i++) {
         const double d = y[i] - out->intercept - out->slope * x[i];
-        const double share = errors ? weight(errors, typical, i) * (x[i] - mean_x) / xx * errors[i] : NAN;
-        left += weight(errors, typical, i) * d * d;
+        const double w = weight(errors, typical, i);
+        const double share = errors ? w * (x[i] - mean_x) / xx * errors[i] : NAN;
+        left += w * d * d;
         known += share * share;
     }
     const double scatter = count > 2 ? left / (count - 2) / xx : NAN;
