@@ -71,7 +71,8 @@ static int colour_channels(const struct gltf *g, const struct json *primitive) {
 static bool add_emitter(struct building *b, struct xml_node *shape,
                         const struct gltf_material *m) {
     struct xml_node *light = tree_add(b->r, shape, "emitter", "area", NULL);
-    b->has_light = true;
+    for (int k = 0; k < 3; k++) // what glows no brighter than white is no lamp
+        b->has_light |= m->emission[k] > 1;
     if (!m->emission_texture) {
         tree_triple(b->r, light, "rgb", "radiance", m->emission);
         return true;

@@ -54,7 +54,7 @@ bool gltf_flag(const struct json *object, const char *key);
 // Fills out with the numbers of an array where there is one; false: there is none.
 bool gltf_numbers(const struct json *object, const char *key, int count, double *out);
 
-// ---- gltf_schema.c, gltf_check.c ------------------------------------------------------------
+// ---- gltf_schema.c, gltf_check*.c ------------------------------------------------------------
 
 // Types, ranges and references of all properties; then the rules that tie objects together.
 bool gltf_check_schema(struct gltf *g);

@@ -81,6 +81,18 @@ static int hex_digit(char c) {
     return c >= '0' && c <= '9' ? c - '0' : isxdigit((unsigned char)c) ? (c | 32) - 'a' + 10 : -1;
 }
 
+// Replaces %XX in place; the number of bytes that are left.
+static size_t unescape(char *text) {
+    char *out = text;
+    for (const char *c = text; *c; c++) {
+        const bool escaped = *c == '%' && hex_digit(c[1]) >= 0 && hex_digit(c[2]) >= 0;
+        *out++ = escaped ? (char)(16 * hex_digit(c[1]) + hex_digit(c[2])) : *c;
+        c += escaped ? 2 : 0;
+    }
+    *out = '\0';
+    return (size_t)(out - text);
+}
+
 const char *gltf_uri_path(struct gltf *g, const char *uri, const char *at) {
     char directory[PATH_MAX];
     const size_t word = strspn(uri, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ+-.0123456789");
@@ -88,13 +100,8 @@ const char *gltf_uri_path(struct gltf *g, const char *uri, const char *at) {
         gltf_fail(g, at, "\"%.60s\" is no relative URI, expected a file beside the model", uri);
         return NULL;
     }
-    char *name = arena_strdup(g->arena, uri), *out = name;
-    for (const char *c = name; *c; c++) {
-        const bool escaped = *c == '%' && hex_digit(c[1]) >= 0 && hex_digit(c[2]) >= 0;
-        *out++ = escaped ? (char)(16 * hex_digit(c[1]) + hex_digit(c[2])) : *c;
-        c += escaped ? 2 : 0;
-    }
-    *out = '\0';
+    char *name = arena_strdup(g->arena, uri);
+    unescape(name);
     file_directory(g->path, directory, sizeof directory);
     const char *path = name[0] == '/' ? name : arena_printf(g->arena, "%s/%s", directory, name);
     if (file_exists(path))
@@ -131,12 +138,20 @@ static bool decode_base64(struct gltf *g, const char *text, const char *at,
     return true;
 }
 
+static bool decode_percent(struct gltf *g, const char *text, struct gltf_buffer *out) {
+    char *data = arena_strdup(g->arena, text);
+    out->size = unescape(data);
+    out->data = (const unsigned char *)data;
+    return true;
+}
+
 bool gltf_load_uri(struct gltf *g, const char *uri, const char *at, struct gltf_buffer *out) {
     if (gltf_is_data_uri(uri)) {
         const char *comma = strchr(uri, ',');
-        if (!comma || comma - uri < 7 || strncmp(comma - 7, ";base64", 7) != 0)
-            return gltf_fail(g, at, "is a data URI of an unknown kind, expected ;base64,");
-        return decode_base64(g, comma + 1, at, out);
+        if (!comma)
+            return gltf_fail(g, at, "is a data URI without data");
+        const bool coded = comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0;
+        return coded ? decode_base64(g, comma + 1, at, out) : decode_percent(g, comma + 1, out);
     }
     const char *path = gltf_uri_path(g, uri, at);
     size_t size;
