@@ -35,8 +35,8 @@ static struct dipole profile(const struct setting *s) {
 }
 
 // The eye sees |x - middle| and |y| < half; the square's outer side faces it.
-static struct measured render_square(const struct setting *s, const char *light, double middle,
-                                     double half, int spp) {
+static struct measured render_shape(const struct setting *s, const char *light, const char *shape,
+                                    double middle, double half, int spp) {
     char text[4096];
     snprintf(text, sizeof text,
              "<scene version='3.0.0'><integrator type='dipole'><string name='model' value='%s'/>"
@@ -45,13 +45,12 @@ static struct measured render_square(const struct setting *s, const char *light,
              "<sensor type='orthographic'><transform name='to_world'><scale x='%g' y='%g'/>"
              "<lookat origin='%g,0,5' target='%g,0,0' up='0,1,0'/></transform><film type='hdrfilm'>"
              "<integer name='width' value='%d'/><integer name='height' value='%d'/>"
-             "<rfilter type='box'/></film></sensor>%s"
-             "<shape type='rectangle'><transform name='to_world'><scale value='2'/></transform>"
+             "<rfilter type='box'/></film></sensor>%s%s"
              "<bsdf type='%s'><float name='int_ior' value='%g'/><float name='ext_ior' value='1'/>"
              "%s</bsdf><medium name='interior' type='homogeneous'><float name='sigma_t' value='%g'/>"
              "<float name='albedo' value='%g'/></medium></shape></scene>",
              s->model, s->normalized ? "true" : "false", half, half, middle, middle, SIDE, SIDE, light,
-             s->rough ? "roughdielectric" : "dielectric", (double)ETA,
+             shape, s->rough ? "roughdielectric" : "dielectric", (double)ETA,
              s->rough ? "<float name='alpha' value='0.001'/>" : "", 1 / (double)FREE_PATH, s->albedo);
     const struct job_options o = {.spp = spp * (full_mode() ? 16 : 1), .variance = true,
                                   .seed = (uint32_t)ztable_count};
@@ -64,10 +63,19 @@ static struct measured render_square(const struct setting *s, const char *light,
     return m;
 }
 
+static struct measured render_square(const struct setting *s, const char *light, double middle,
+                                     double half, int spp) {
+    return render_shape(s, light,
+                        "<shape type='rectangle'><transform name='to_world'><scale value='2'/>"
+                        "</transform>", middle, half, spp);
+}
+
 static double fresnel(double cosine) {
     float cos_t;
     return (double)fresnel_dielectric((float)cosine, ETA, &cos_t);
 }
+
+#define UNIFORM "<emitter type='constant'><rgb name='radiance' value='1'/></emitter>"
 
 static double normalization(const struct setting *s) {
     return s->normalized ? 1 / (double)dipole_diffuse_transmittance(ETA) : 1;
@@ -81,9 +89,7 @@ static void test_uniform(const struct setting *s) {
     char name[96];
     snprintf(name, sizeof name, "%s, albedo %g, uniform light%s", s->model, s->albedo,
              s->normalized ? "" : ", literal");
-    ztable_add(name, expected,
-               render_square(s, "<emitter type='constant'><rgb name='radiance' value='1'/></emitter>", 0, 0.5,
-                      256), 2e-5);
+    ztable_add(name, expected, render_square(s, UNIFORM, 0, 0.5, 256), 2e-5);
 }
 
 #define SUN                                                                                        \
@@ -135,6 +141,27 @@ static void test_edge(const struct setting *s, double free_paths) {
     ztable_add(name, sunlit(s, share), render_square(s, light, width / 2, width / 2, 256), 2e-5);
 }
 
+// A sphere has as much area within a chord r as a plane, so that in uniform light its middle shows the
+// closed form with the integral of R_d up to the diameter; all axes of the probes find some of it.
+static void test_sphere(const struct setting *s, double free_paths) {
+    const struct dipole d = profile(s);
+    const double radius = free_paths * (double)FREE_PATH;
+    enum { NODES = 48 };
+    double node[NODES], weight[NODES], inside = 0;
+    gauss_legendre(NODES, node, weight);
+    for (int i = 0; i < NODES; i++) {
+        const double r = 2 * radius * node[i];
+        inside += 2 * radius * weight[i] * 2 * 3.14159265358979 * r * (double)dipole_Rd(&d, (float)r)[0];
+    }
+    const double passes = 1 - fresnel_dielectric_average((double)ETA);
+    char text[512], name[96];
+    snprintf(name, sizeof name, "%s, albedo %g, sphere of %g free paths", s->model, s->albedo,
+             free_paths);
+    snprintf(text, sizeof text, "<shape type='sphere'><float name='radius' value='%.9g'/>", radius);
+    ztable_add(name, fresnel(1) + (1 - fresnel(1)) * inside * passes * normalization(s),
+               render_shape(s, UNIFORM, text, 0, 1e-3 * radius, 1024), 2e-5);
+}
+
 // Nothing is lost and nothing gained where nothing absorbs. The sphere is closed, so that no light
 // escapes by the profile's tail; its curvature matters little at so many free paths.
 static void test_white_sphere(void) {
@@ -164,6 +191,8 @@ int main(void) {
     for (int i = 1; i < 4; i += 2) {
         test_edge(&settings[i], 1);
         test_edge(&settings[i], 4);
+        test_sphere(&settings[i], 1);
+        test_sphere(&settings[i], 8);
     }
     test_white_sphere();
     scene_folder_close();
