@@ -298,6 +298,8 @@ bool view_defaults(struct reader *r) {
         log_error("%s: the scene has no sensor", s->path);
         return false;
     }
+    if (r->sensors.count > 1)
+        log_info("%s: the first of %zu sensors is used", s->path, r->sensors.count);
     if (s->film.width == 0 && !film_read(r, default_node(r, "film", "hdrfilm"), true))
         return false;
     if (!s->sampler && !sampler_read(r, default_node(r, "sampler", "sobol"), true))

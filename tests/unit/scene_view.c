@@ -20,6 +20,7 @@ static void film(void) {
         "<string name='pixel_format' value='luminance'/><rfilter type='tent'/></film></sensor>"
         "<sensor type='orthographic'/></scene>", NULL, NULL);
     CHECK(s && s->sensor_count == 2);
+    CHECK(captured_has("the first of 2 sensors is used"));
     if (s) {
         const struct film_settings f = s->film;
         CHECK(f.width == 100 && f.height == 50 && !f.alpha);
