@@ -14,7 +14,8 @@ static const char style[] =
     "body{font:14px/1.4 sans-serif;color:#222;background:#fff;margin:0 auto;padding:16px;"
     "max-width:1232px}h1{font-size:20px;margin:0 0 4px}h2{font-size:16px;margin:22px 0 6px}"
     "p{margin:4px 0;max-width:100ch}code{background:#f2f2f2;padding:1px 4px;overflow-wrap:anywhere}"
-    ".plots{display:flex;flex-wrap:wrap;gap:16px}.answer{font-size:16px;border-left:4px solid #b00020;"
+    ".plots{display:flex;flex-wrap:wrap;gap:16px}.plots div{max-width:600px;overflow-x:auto}"
+    ".answer{font-size:16px;border-left:4px solid #b00020;"
     "padding:2px 10px;margin:8px 0}table{border-collapse:collapse}th,td{padding:3px 10px;"
     "text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}th{background:#f6f6f6}"
     "th:first-child,td:first-child{text-align:left}tr.front td{background:#eef6ee}"
@@ -65,12 +66,12 @@ static void write_exponent(bool known, const struct line_fit *fit, FILE *f) {
 }
 
 static void write_exponents(const struct study *study, FILE *f) {
-    fprintf(f, "<div><h2>Exponents</h2>\n<table><tr><th>series</th>");
+    fprintf(f, "<div><h2>Exponents of relMSE</h2>\n<table><tr><th>series</th>");
     if (study->along >= 0) {
         const char *name = study->options->factors->items[study->along].name;
-        fprintf(f, "<th>relMSE over %s</th><th>variance over %s</th>", name, name);
+        fprintf(f, "<th>over %s</th><th>of variance</th>", name);
     }
-    fprintf(f, "<th>relMSE over seconds</th><th>relMSE over memory</th></tr>\n");
+    fprintf(f, "<th>over seconds</th><th>over memory</th></tr>\n");
     for (size_t i = 0; i < study->series_count; i++) {
         const struct study_series *s = &study->series[i];
         fprintf(f, "<tr><td>");
