@@ -51,6 +51,8 @@ struct mesh_options {
     bool face_normals;    // drop vertex normals
     bool flip_uvs;        // the other way than Mitsuba's default (OBJ: v -> 1 - v; others: as is)
     const char *shape_name; // OBJ: only this group/object; NULL: all
+    const char *material_name; // OBJ: only faces of this material, "" for those before the first
+                               // usemtl; NULL: all
     int threads;          // 0: default
 };
 

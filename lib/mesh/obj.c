@@ -32,6 +32,7 @@ struct obj {
     struct corner_table corners;
     uint32_t (*triangles)[3];
     size_t triangle_count, triangle_capacity;
+    bool in_material; // by options->material_name; true without one
     bool in_object, in_group, ever_selected; // by options->shape_name; both true without one
     size_t points_and_lines, small_faces, free_forms;
     uint32_t furthest[3]; // largest index from zero of v, vt, vn in a face, plus one ...
@@ -180,7 +181,7 @@ static bool read_face(struct obj *o) {
         struct corner c;
         if (!read_corner(o, &c))
             return false;
-        if (!o->in_object && !o->in_group)
+        if ((!o->in_object && !o->in_group) || !o->in_material)
             continue;
         fan[corners < 2 ? corners : 2] = corner_vertex(&o->corners, c);
         if (corners < 2)
@@ -218,6 +219,18 @@ static bool read_group(struct obj *o, bool several) {
     return true;
 }
 
+// The name behind "usemtl", which may hold blanks.
+static bool read_material(struct obj *o) {
+    const char *wanted = o->options->material_name;
+    skip_blanks(o);
+    const char *end = o->p + strcspn(o->p, "\r\n");
+    while (end > o->p && text_is_blank(end[-1]))
+        end--;
+    const size_t n = (size_t)(end - o->p);
+    o->in_material = !wanted || (strlen(wanted) == n && memcmp(o->p, wanted, n) == 0);
+    return true;
+}
+
 static bool word_is(const char *word, size_t n, const char *name) {
     return strncmp(word, name, n) == 0 && name[n] == '\0';
 }
@@ -225,7 +238,7 @@ static bool word_is(const char *word, size_t n, const char *name) {
 // Statements that a polygon mesh can do without. Free forms and points are counted, to be told.
 static bool skip_statement(struct obj *o, const char *word, size_t n) {
     static const char *const ignored[] = {
-        "mtllib", "usemtl", "s", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib",
+        "mtllib", "s", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib",
         "usemap", "shadow_obj", "trace_obj", "deg", "bmat", "step", "cstype", "parm", "trim",
         "hole", "scrv", "sp", "end", "con", "call", "csh", NULL};
     static const char *const free_forms[] = {"curv", "curv2", "surf", NULL};
@@ -260,6 +273,8 @@ static bool read_line(struct obj *o) {
         return read_uv(o);
     if (word_is(word, n, "o") || word_is(word, n, "g"))
         return read_group(o, *word == 'g');
+    if (word_is(word, n, "usemtl"))
+        return read_material(o);
     return skip_statement(o, word, n);
 }
 
@@ -368,6 +383,7 @@ static bool read_obj(const char *path, const struct mesh_options *options, struc
     if (!text)
         return false;
     struct obj o = {.options = options, .at = {path, 0}, .in_object = !options->shape_name,
+                    .in_material = !options->material_name || !*options->material_name,
                     .v.width = 3, .vt.width = 2, .vn.width = 3, .colors.width = 3};
     bool good = read_text(&o, text, size);
     mem_free(text);

@@ -6,3 +6,4 @@
 #include "scene/reader.h"
 
 struct xml_node *gltf_scene_tree(struct reader *r, const char *path);
+struct xml_node *obj_scene_tree(struct reader *r, const char *path);
