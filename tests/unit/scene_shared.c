@@ -30,7 +30,7 @@ static const struct known {
     {"mitsuba-tests/instancing/test_instancing_path.xml", 3, 1, 0, 97542, 64, 64, 0, 0},
     {"mitsuba-tests/mesh_attributes/test_mesh_attributes_1_face_direct.xml", 1, 1, 1, 528, 48, 48,
      0, 0},
-    {"mitsuba-tests/participating_media/test_homo_area_light_volpath.xml", 4, 1, 0, 8720, 48, 48,
+    {"mitsuba-tests/participating_media/test_homo_area_light_volpath.xml", 4, 1, 1, 8720, 48, 48,
      0, 0},
     {"mitsuba-tests/spot_light/test_spot_direct.xml", 1, 2, 1, 2, 48, 48, 0, 0},
 };
