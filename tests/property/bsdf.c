@@ -405,8 +405,12 @@ int main(int argc, char **argv) {
     const double level = sidak(FALSE_ALARMS, bsdf_set_count(NULL) * (2 * BSDF_DIRECTIONS + 1));
     printf("directional albedo from outside (+) and inside (-) at 1 12 27 40 52 63 72 80 86 89 "
            "degrees\n");
-    for (int row = 0; row < BSDF_ROWS; row++) {
+    // Under sanitizers, which look for other faults than wrong densities, every fifth set is enough.
+    const int stride = getenv("RELUME_TEST_SANITIZED") ? 5 : 1;
+    for (int row = 0, set = 0; row < BSDF_ROWS; row++) {
         for (int i = 0; i < bsdf_row_sets(row); i++) {
+            if (bsdf_is_asked(argc, argv, bsdf_rows[row].name) && set++ % stride)
+                continue;
             struct arena arena = {0};
             if (bsdf_is_asked(argc, argv, bsdf_rows[row].name)) {
                 const struct bsdf_case c = bsdf_case_at(&arena, row, i);

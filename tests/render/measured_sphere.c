@@ -4,7 +4,8 @@
 // second program in double precision. Needs the shared data.
 //
 // The camera sees one point of the sphere, at three angles: 30 pictures of one pixel with 2^17
-// samples, each within 0.5 % of the sum in each channel. Standard errors are below 0.1 %.
+// samples, each within 0.5 % of the sum in each channel. Standard errors are below 0.1 %. The short
+// mode takes three of the materials, at one angle each.
 #include "check.h"
 #include "merl_lookup.h"
 #include "nbrdf.h"
@@ -98,9 +99,13 @@ int main(void) {
     if (!image_read(probe_path, &probe))
         return 1;
     for (int m = 0; m < 10 && nbrdf_load(materials[m], &network); m++) {
+        if (!full_mode() && m % 4)
+            continue;
         float(*table)[3] = nbrdf_table(&network);
         CHECK(merl_write(table_path, table));
         for (int a = 0; a < 3; a++) {
+            if (!full_mode() && a != m % 3)
+                continue;
             double expected[3], found[3];
             brute_force(&probe, table, degrees[a] * M_PI / 180, expected);
             render_point(probe_path, table_path, degrees[a] * M_PI / 180, found);
