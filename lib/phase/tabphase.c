@@ -17,7 +17,7 @@ struct tabphase {
 };
 
 static const struct param params[] = {
-    {"values", PARAM_STRING, offsetof(struct tabphase, text),
+    {"values", PARAM_STRING, offsetof(struct tabphase, text), .def = "1, 1",
      .help = "values by cosine from -1 (straight back) to 1, apart by commas or blanks"},
     PARAM_END,
 };
