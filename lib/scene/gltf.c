@@ -373,6 +373,7 @@ struct xml_node *gltf_scene_tree(struct reader *r, const char *path) {
         b.lo[k] = INFINITY;
         b.hi[k] = -INFINITY;
     }
+    *LIST_ADD(&r->directories, const char *) = "."; // pictures are named by whole paths
     bool ok = gltf_open(&g, path, r->arena) && load_hash_file(r, path);
     const size_t meshes = ok ? json_count(json_get(g.root, "meshes")) : 0;
     b.uses = mem_array(meshes, sizeof *b.uses);

@@ -11,7 +11,7 @@ struct xml_node *tree_add(struct reader *r, struct xml_node *parent, const char 
                           const char *type, const char *id) {
     struct xml_node *node = xml_new(tag, place(r), r->arena);
     if (type)
-        xml_set(node, "type", type, r->arena);
+        xml_set(node, "type", arena_strdup(r->arena, type), r->arena);
     if (id)
         xml_set(node, "id", id, r->arena);
     if (parent)

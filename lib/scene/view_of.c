@@ -80,8 +80,8 @@ void tree_add_sky(struct reader *r, struct xml_node *scene) {
     struct xml_node *sky = tree_add(r, scene, "emitter", "sunsky", NULL);
     tree_text(r, sky, "string", "up", "y");
     tree_triple(r, sky, "vector", "sun_direction", sun);
-    tree_number(r, sky, "scale", 10); // white paper in the sun is then about 1
+    tree_number(r, sky, "scale", 3);
     struct xml_node *ground = tree_add(r, scene, "emitter", "constant", NULL);
-    tree_text(r, ground, "rgb", "radiance", "0.25 0.25 0.25");
+    tree_text(r, ground, "rgb", "radiance", "0.1 0.1 0.1");
     log_info("%s: has no light: a clear sky and grey surroundings light it", r->scene->path);
 }

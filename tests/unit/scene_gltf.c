@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// glTF models from text: instances, cameras, lights, materials and refusals.
+#include "scene_text.h"
+
+// Three vertices (0 0 0) (1 0 0) (0 1 0) as floats.
+#define TRIANGLE                                                                                   \
+    "\"asset\":{\"version\":\"2.0\"},\"scene\":0,"                                                 \
+    "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"              \
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"                                        \
+    "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"                                          \
+    "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","       \
+    "\"min\":[0,0,0],\"max\":[1,1,0]}],"
+#define MESH                                                                                       \
+    "\"meshes\":[{\"name\":\"tri\",\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]}],"
+
+static struct scene *read_model(const char *text) {
+    const struct scene_options options = scene_real_options();
+    scene_write("model.gltf", text);
+    capture_begin();
+    struct scene *s = scene_read(scene_path("model.gltf"), &options);
+    capture_end();
+    return s;
+}
+
+static void frames_and_lights_a_bare_model(void) {
+    struct scene *s = read_model("{" TRIANGLE MESH "\"materials\":[{}],\"nodes\":[{\"mesh\":0}],"
+                                 "\"scenes\":[{\"nodes\":[0]}]}");
+    CHECK(s);
+    if (!s)
+        return;
+    CHECK(captured_has("has no camera") && captured_has("has no light"));
+    CHECK(s->shape_count == 1 && s->shapes[0].mesh.triangle_count == 1);
+    CHECK(s->film.width == 1280 && s->film.height == 720);
+    CHECK(s->sensor_count == 1 && s->light_count == 2);
+    CHECK(strcmp(s->shapes[0].bsdf->type->name, "twosided") == 0);
+    scene_destroy(s);
+}
+
+static void shares_a_mesh_by_instances(void) {
+    struct scene *s = read_model(
+        "{" TRIANGLE MESH "\"materials\":[{}],\"nodes\":[{\"mesh\":0,\"translation\":[2,0,0]},"
+        "{\"mesh\":0,\"rotation\":[0,0,0.70710678,0.70710678]}],\"scenes\":[{\"nodes\":[0,1]}]}");
+    CHECK(s && s->instance_count == 2 && s->group_count == 1 && s->shape_count == 1);
+    CHECK(s && s->instances[0].to_world.m[0][3] == 2);
+    // a quarter turn about z takes x to y
+    CHECK(s && fabs(s->instances[1].to_world.m[1][0] - 1) < 1e-7);
+    scene_destroy(s);
+}
+
+static void reads_cameras_lights_and_emission(void) {
+    struct scene *s = read_model(
+        "{" TRIANGLE MESH "\"extensionsUsed\":[\"KHR_lights_punctual\","
+        "\"KHR_materials_emissive_strength\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":"
+        "[{\"type\":\"spot\",\"intensity\":5,\"spot\":{}}]}},\"cameras\":[{\"type\":\"perspective\","
+        "\"perspective\":{\"yfov\":1,\"znear\":0.1}}],\"materials\":[{\"emissiveFactor\":[1,0.5,0],"
+        "\"extensions\":{\"KHR_materials_emissive_strength\":{\"emissiveStrength\":10}}}],"
+        "\"nodes\":[{\"mesh\":0},{\"camera\":0},{\"extensions\":{\"KHR_lights_punctual\":"
+        "{\"light\":0}}}],\"scenes\":[{\"nodes\":[0,1,2]}]}");
+    CHECK(s && s->light_count == 2 && s->sensor_count == 1 && s->shapes[0].light != SCENE_NONE);
+    CHECK(!captured_has("has no"));
+    scene_destroy(s);
+}
+
+static void refuses_with_a_pointer(void) {
+    CHECK(!read_model("{" TRIANGLE MESH "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}"));
+    CHECK(captured_has("model.gltf: /meshes/0/primitives/0/material: is 0"));
+    CHECK(!read_model("{" TRIANGLE MESH "\"materials\":[{\"alphaCutoff\":-1}],\"scenes\":[{}]}"));
+    CHECK(captured_has("/materials/0/alphaCutoff: is -1"));
+    CHECK(!read_model("{\"asset\":{\"version\":\"1.0\"}}") && captured_has("/asset/version"));
+}
+
+int main(void) {
+    scene_folder_open();
+    frames_and_lights_a_bare_model();
+    shares_a_mesh_by_instances();
+    reads_cameras_lights_and_emission();
+    refuses_with_a_pointer();
+    scene_folder_close();
+    return check_result();
+}
