@@ -4,13 +4,17 @@
 
     peer_compare.py --relume PROGRAM SCENE:WxH:SPP ...
 
-Render time only (no loading, no compilation), medians. Equal samples: both with their independent
-sampler. Equal error: time x relMSE against one reference (relume, another seed, 16 times the
-samples), which is the time to a given relMSE where error falls as 1/N; relume with its default
-sampler, Mitsuba llvm with the better of independent and multijitter.
+Render time only (no loading, no compilation), medians; each ratio twice, of wall clock and of
+processor seconds (user and system, all threads; ours without loading), since other work on the
+machine stretches the first far more. Equal samples: both with their independent sampler. Equal
+error: time x relMSE, which is the time to a given relMSE where error falls as 1/N; relume with its
+default sampler, Mitsuba llvm with the better of independent and multijitter. The error is the mean
+of (picture - A) (picture - B) over two independent references, so that their own noise drops out;
+both are Mitsuba's, each with 4 times the samples.
 """
 import argparse
 import json
+import resource
 import statistics
 import subprocess
 import sys
@@ -31,58 +35,74 @@ def read_rgb(path):
         return rgb.astype(np.float64)
 
 
-def relmse(picture, reference):
-    return np.mean((picture - reference)**2 / (reference**2 + 1e-3 * reference.mean()**2))
+def relmse(picture, references):
+    a, b = references
+    mean = (a + b) / 2
+    return np.mean((picture - a) * (picture - b) / (mean**2 + 1e-3 * mean.mean()**2))
+
+
+def cpu_seconds():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def relume(args, scene, size, spp, sampler, seed, out):
     command = [args.relume, "render", scene, "-o", out, "--size", size, "--spp", str(spp),
                "--sampler", sampler, "--seed", str(seed), "--quiet", "--json"]
+    start = cpu_seconds()
     result = subprocess.run(command, check=True, capture_output=True, text=True)
-    return json.loads(result.stdout)["seconds"]
+    return np.array([json.loads(result.stdout)["seconds"], cpu_seconds() - start])
 
 
-def mitsuba(scene, variant, size, spp, sampler, reference):
+def mitsuba(scene, variant, size, spp, sampler, seed, out, passes=1):
     width, height = size.split("x")
     command = [sys.executable, str(Path(__file__).with_name("peer_mitsuba.py")), scene,
                "--variant", variant, "--width", width, "--height", height, "--spp", str(spp),
-               "--sampler", sampler, "--repeats", "1" if variant == "scalar_rgb" else str(REPEATS),
-               "--ref", reference]
+               "--sampler", sampler, "--repeats", "1", "--seed", str(seed), "--passes", str(passes),
+               "--out", out]
     result = subprocess.run(command, check=True, capture_output=True, text=True)
     data = json.loads(result.stdout)
-    return data["seconds"] * spp / data["spp"], data["relmse"] * data["spp"] / spp
+    # multijitter rounds the sample count up
+    return np.array([data["seconds"], data["cpu_seconds"]]) * spp / data["spp"], data["spp"] / spp
+
+
+PEERS = (("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"),
+         ("llvm_ad_rgb", "multijitter"))
+
+
+def measure(args, scene, size, spp, folder):
+    """Seconds (wall, processor) and relMSE of every renderer, all repeats in turn."""
+    out, references = f"{folder}/out.exr", []
+    for seed in (1001, 1002):
+        mitsuba(scene, "llvm_ad_rgb", size, spp, "independent", seed, out, 4)
+        references.append(read_rgb(out))
+    loading = min(relume(args, scene, "16x16", 1, "sobol", 0, out)[1] for _ in range(REPEATS))
+    seconds, errors = {}, {}
+    for repeat in range(REPEATS):
+        for sampler in ("independent", "sobol"):
+            spent = relume(args, scene, size, spp, sampler, repeat, out)
+            seconds.setdefault(sampler, []).append(spent - [0, loading])
+            errors.setdefault(sampler, []).append(relmse(read_rgb(out), references))
+        for peer in PEERS[repeat > 0:]: # the scalar one takes long: once
+            spent, more = mitsuba(scene, peer[0], size, spp, peer[1], repeat, out)
+            seconds.setdefault(peer, []).append(spent)
+            errors.setdefault(peer, []).append(relmse(read_rgb(out), references) * more)
+    return ({key: np.median(value, axis=0) for key, value in seconds.items()},
+            {key: statistics.mean(value) for key, value in errors.items()})
 
 
 def compare(args, scene, size, spp):
     with tempfile.TemporaryDirectory() as folder:
-        reference, out = f"{folder}/reference.exr", f"{folder}/out.exr"
-        relume(args, scene, size, 16 * spp, "sobol", 4711, reference)
-        truth = read_rgb(reference)
-        ours, best, error = [], [], []
-        peers = {key: ([], []) for key in
-                 (("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"),
-                  ("llvm_ad_rgb", "multijitter"))}
-        for repeat in range(REPEATS):
-            ours.append(relume(args, scene, size, spp, "independent", repeat, out))
-            best.append(relume(args, scene, size, spp, "sobol", repeat, out))
-            error.append(relmse(read_rgb(out), truth))
-            for (variant, sampler), (seconds, errors) in peers.items():
-                if variant == "scalar_rgb" and repeat > 0:
-                    continue
-                t, e = mitsuba(scene, variant, size, spp, sampler, reference)
-                seconds.append(t)
-                errors.append(e)
-    equal = {key: statistics.median(value[0]) / statistics.median(ours)
-             for key, value in peers.items()}
-    cost = min(statistics.median(peers["llvm_ad_rgb", s][0]) *
-               statistics.mean(peers["llvm_ad_rgb", s][1]) for s in ("independent", "multijitter"))
-    paths = int(size.split("x")[0]) * int(size.split("x")[1]) * spp / 1e6
-    print(f"{Path(scene).parent.name} {size} {spp} spp: relume {paths / statistics.median(ours):.2f} "
-          f"Mpaths/s; equal samples: {equal['scalar_rgb', 'independent']:.2f} x scalar_rgb, "
-          f"{equal['llvm_ad_rgb', 'independent']:.2f} x llvm; equal relMSE: "
-          f"{cost / (statistics.median(best) * statistics.mean(error)):.2f} x llvm "
-          f"(relMSE relume {statistics.mean(error):.3g}, llvm "
-          f"{min(statistics.mean(peers['llvm_ad_rgb', s][1]) for s in ('independent', 'multijitter')):.3g})",
+        seconds, errors = measure(args, scene, size, spp, folder)
+    cost = np.min([seconds[p] * errors[p] for p in PEERS[1:]], axis=0)
+    width, height = map(int, size.split("x"))
+    ratios = (("scalar_rgb", seconds[PEERS[0]] / seconds["independent"]),
+              ("llvm", seconds[PEERS[1]] / seconds["independent"]),
+              ("llvm to equal relMSE", cost / (seconds["sobol"] * errors["sobol"])))
+    print(f"{Path(scene).parent.name} {size} {spp} spp: relume "
+          f"{width * height * spp / 1e6 / seconds['independent'][0]:.2f} Mpaths/s; times ours, wall "
+          "(processor): " + ", ".join(f"{name} {r[0]:.2f} ({r[1]:.2f})" for name, r in ratios) +
+          f"; relMSE relume {errors['sobol']:.3g}, llvm {min(errors[p] for p in PEERS[1:]):.3g}",
           flush=True)
 
 
