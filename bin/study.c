@@ -153,8 +153,8 @@ const struct subcommand subcommand_study = {
                                "Pareto front. Ctrl-C writes what there is (exit code 3).",
                 .examples = "  relume study scene.xml --vary sampler=independent,sobol "
                             "--vary spp=4,16,64,256 -o samplers\n"
-                            "  relume study scene.xml --reference ref.exr --vary max-depth=2,4,8 "
-                            "--vary spp=16,64 \\\n      --target relmse=1e-3 -o depth\n"
+                            "  relume study scene.xml --reference-spp 4096 --vary spp=16,64,256 "
+                            "--target relmse=1e-3 -o samples\n"
                             "  relume study scene.xml --size 160x90 --vary integrator=path,direct "
                             "--vary time=1,2,4 -o methods\n",
                 .more_help = print_registries},
