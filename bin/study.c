@@ -156,7 +156,7 @@ const struct subcommand subcommand_study = {
                             "  relume study scene.xml --reference-spp 4096 --vary spp=16,64,256 "
                             "--target relmse=1e-3 -o samples\n"
                             "  relume study scene.xml --size 160x90 --vary integrator=path,direct "
-                            "--vary time=1,2,4 -o methods\n",
+                            "--vary time=0.5,1 --repeat 3 -o methods\n",
                 .more_help = print_registries},
     .run = run,
 };
