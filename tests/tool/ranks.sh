@@ -9,6 +9,7 @@ relume=$1
 # shellcheck source=tests/tool/pictures.sh
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0 # MPI does not give back all it takes
 if ! command -v mpirun >/dev/null || ! grep -q MPI_Init "$relume"; then
     echo "no mpirun, or built without MPI"
     exit 77
