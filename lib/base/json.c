@@ -129,7 +129,7 @@ void json_print(const struct json *root, bool indented) {
 }
 
 char *json_to_text(const struct json *root) {
-    const size_t flags = JSON_REAL_PRECISION(15) | JSON_ENCODE_ANY;
+    const size_t flags = JSON_REAL_PRECISION(17) | JSON_ENCODE_ANY;
     const size_t size = json_dumpb(see(root), NULL, 0, flags);
     char *text = mem_array(size + 1, 1);
     json_dumpb(see(root), text, size, flags);

@@ -33,7 +33,7 @@ void json_print(const struct json *root, bool indented);
 // The same for people: a line "key: value" each, nested ones indented; arrays of plain values on
 // one line.
 void json_print_lines(const struct json *root);
-// The same line as a text, to be freed with mem_free.
+// The same line as a text, with 17 digits, which give the same bits back; free with mem_free.
 char *json_to_text(const struct json *root);
 // Atomic; false after an error message.
 bool json_write(const struct json *root, const char *path);

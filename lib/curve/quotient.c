@@ -2,6 +2,7 @@
 #include "curve/quotient.h"
 
 #include <math.h>
+#include <string.h>
 
 const char *const quotient_names[] = {"one", "v_cavity", "ashikhmin", "ward", "ward_duer",
                                       "ward_bounded", "schlick", "schlick_rest", "oren_nayar",
@@ -89,9 +90,14 @@ static bool function_equal(const struct curve_function *a, const struct curve_fu
            a->channel == b->channel;
 }
 
+static bool profile_equal(const struct profile *a, const struct profile *b) {
+    return a == b || (a && b && memcmp(a, b, sizeof *a) == 0);
+}
+
 bool quotient_equal(const struct quotient *a, const struct quotient *b) {
     if (a->kind != b->kind || a->n != b->n || a->roughness != b->roughness ||
-        a->isotropy != b->isotropy || a->g != b->g || a->has_fresnel != b->has_fresnel)
+        a->isotropy != b->isotropy || !profile_equal(a->g, b->g) ||
+        a->has_fresnel != b->has_fresnel)
         return false;
     for (int k = 0; k < CURVE_CHANNELS && a->has_fresnel; k++)
         if (!function_equal(&a->fresnel[k], &b->fresnel[k]))

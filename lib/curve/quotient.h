@@ -40,5 +40,5 @@ struct quotient {
 // out: per channel
 void quotient_cos(const struct quotient *q, struct angles *a, double out[CURVE_CHANNELS]);
 
-// Whether both are the same function (profiles: the same object).
+// Whether both are the same function.
 bool quotient_equal(const struct quotient *a, const struct quotient *b);
