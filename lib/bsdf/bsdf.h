@@ -93,6 +93,9 @@ struct bsdf_type {
     // Directional albedo towards wo: exact where cheap, else a good approximation, for the albedo
     // layer and sampling decisions; never for the picture.
     spectrum (*albedo)(const struct closure *closure);
+    // Of a closure around one other: that one, with wi brought into its frame, and times what the
+    // outer one leaves of it. NULL: it has none, or it is black. NULL function: never.
+    const struct closure *(*inside)(const struct closure *closure, vec3 *wi, float *factor);
     // Straight-through transmittance of the LOBE_NULL part for a ray along wo; NULL: zero.
     spectrum (*null_transmittance)(const void *data, const struct bsdf_point *point, vec3 wo);
 };
@@ -141,9 +144,6 @@ bool bsdf_check_nesting(const struct object *o);
 static inline spectrum closure_eval(const struct closure *c, vec3 wi, float *pdf_sa) {
     return c->type->eval(c, wi, pdf_sa);
 }
-
-// The eval of materials that are delta functions: 0 everywhere.
-spectrum closure_eval_delta(const struct closure *c, vec3 wi, float *pdf_sa);
 
 static inline bool closure_sample(const struct closure *c, float u1, struct vec2 u2,
                                   struct bsdf_sample *s) {

@@ -15,6 +15,7 @@ struct editable_closure {
     struct closure head;
     const struct editable *self;
     struct direction wo;
+    spectrum texture[FORM_TERMS];
     spectrum factor[FORM_TERMS]; // f_q times textures
     float select[FORM_TERMS];    // sum to 1
 };
@@ -54,8 +55,8 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     c->wo = direction_from(wo);
     for (uint32_t t = 0; t < self->form.terms; t++) {
         const double *s = self->form.term[t].scale;
-        c->factor[t] = spectrum_rgb((float)s[0], (float)s[1], (float)s[2]) *
-                       texture_eval(self->texture[t], &point->at);
+        c->texture[t] = texture_eval(self->texture[t], &point->at);
+        c->factor[t] = spectrum_rgb((float)s[0], (float)s[1], (float)s[2]) * c->texture[t];
         c->select[t] = spectrum_mean(c->factor[t] * editable_albedo(self, t, c->wo.z)) +
                        1e-3f * spectrum_mean(c->factor[t]);
         total += c->select[t];
@@ -140,6 +141,24 @@ static spectrum albedo(const struct closure *closure) {
 const struct form *editable_form(const struct object *material) {
     return material->type == &bsdf_editable.entry
                ? &((const struct editable *)material->data)->form : NULL;
+}
+
+const struct closure *editable_inside(const struct closure *c, vec3 *wi, float *factor) {
+    while (c && c->type != &bsdf_editable)
+        c = c->type->inside ? c->type->inside(c, wi, factor) : NULL;
+    return c;
+}
+
+const void *editable_owner(const struct closure *closure) {
+    return ((const struct editable_closure *)(const void *)closure)->self;
+}
+
+struct direction editable_wo(const struct closure *closure) {
+    return ((const struct editable_closure *)(const void *)closure)->wo;
+}
+
+spectrum editable_texture_at(const struct closure *closure, uint32_t term) {
+    return ((const struct editable_closure *)(const void *)closure)->texture[term];
 }
 
 const struct texture_ref *editable_texture(const struct object *material, uint32_t term) {

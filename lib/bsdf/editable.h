@@ -9,7 +9,8 @@
 #pragma once
 
 #include "bsdf/bsdf.h"
-#include "curve/form.h"
+#include "curve/model.h"
+#include "math/direction.h"
 
 // The functions of a curve's basis that are not zero at its gamma.
 struct curve_place {
@@ -25,8 +26,20 @@ struct editable_value {
 
 // NULL: the material is of another type. All curves of the form are tables.
 const struct form *editable_form(const struct object *material);
+// The model its curves were generated from, and the numbers that went into them.
+const char *editable_model(const struct object *material, struct model_parameters *p);
 // The textured factor of a term, or what it is where there is no texture.
 const struct texture_ref *editable_texture(const struct object *material, uint32_t term);
+
+// The closure of an editable material in another one, where others are around it (a twosided, a
+// mask, a bumpmap): wi is brought into its frame, and factor times what those leave. NULL: none.
+const struct closure *editable_inside(const struct closure *closure, vec3 *wi, float *factor);
+
+// Of a closure of an editable material: the data of the material's object, wo in its frame, and the
+// texture of a term where it was resolved.
+const void *editable_owner(const struct closure *closure);
+struct direction editable_wo(const struct closure *closure);
+spectrum editable_texture_at(const struct closure *closure, uint32_t term);
 
 // For a closure of an editable material: a value for each term; returns their number, which is 0
 // where wi is not above the surface.

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "bsdf/editable.h"
 #include "bsdf/editable_albedo.h"
 #include "curve/operators.h"
 
@@ -121,6 +122,12 @@ static void fill_parameters(const struct editable *e, struct model_parameters *p
     p->quotient = (enum quotient_kind)e->quotient;
     for (int s = 0; s < SLOTS; s++)
         p->gamma[s] = (enum gamma_kind)e->gamma[s];
+}
+
+const char *editable_model(const struct object *material, struct model_parameters *p) {
+    const struct editable *e = material->data;
+    fill_parameters(e, p);
+    return model_names[e->model];
 }
 
 static bool read_curves(const struct editable *e, struct model_parameters *p,

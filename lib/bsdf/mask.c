@@ -73,6 +73,13 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
     return true;
 }
 
+static const struct closure *inside(const struct closure *closure, vec3 *wi, float *factor) {
+    const struct mask_data *c = (const void *)closure;
+    (void)wi;
+    *factor *= c->opacity;
+    return c->child;
+}
+
 static spectrum albedo(const struct closure *closure) {
     const struct mask_data *c = (const void *)closure;
     const spectrum through = spectrum_grey(1 - c->opacity);
@@ -90,5 +97,5 @@ const struct bsdf_type bsdf_mask = {
               .size = sizeof(struct mask)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
     .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
-    .albedo = albedo, .null_transmittance = null_transmittance,
+    .albedo = albedo, .inside = inside, .null_transmittance = null_transmittance,
 };

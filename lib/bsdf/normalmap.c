@@ -51,6 +51,6 @@ const struct bsdf_type bsdf_normalmap = {
               .size = sizeof(struct normalmap)},
     .claims = CLAIM_ENERGY,
     .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = perturbed_eval,
-    .sample = perturbed_sample, .albedo = perturbed_albedo,
+    .sample = perturbed_sample, .albedo = perturbed_albedo, .inside = perturbed_inside,
     .null_transmittance = null_transmittance,
 };

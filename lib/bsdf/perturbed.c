@@ -66,6 +66,14 @@ spectrum perturbed_eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     return closure_eval(c->child, tilted, pdf_sa) * shadowing(c, wi);
 }
 
+const struct closure *perturbed_inside(const struct closure *closure, vec3 *wi, float *factor) {
+    const struct perturbed_data *c = (const void *)closure;
+    const vec3 tilted = to_local(&c->frame, *wi);
+    *factor *= same_hemisphere(tilted, *wi) ? shadowing(c, *wi) : 0;
+    *wi = tilted;
+    return c->child;
+}
+
 bool perturbed_sample(const struct closure *closure, float u1, struct vec2 u2,
                       struct bsdf_sample *s) {
     const struct perturbed_data *c = (const void *)closure;

@@ -25,4 +25,5 @@ spectrum perturbed_null_transmittance(const struct perturbation *p, const struct
 spectrum perturbed_eval(const struct closure *closure, vec3 wi, float *pdf_sa);
 bool perturbed_sample(const struct closure *closure, float u1, struct vec2 u2,
                       struct bsdf_sample *s);
+const struct closure *perturbed_inside(const struct closure *closure, vec3 *wi, float *factor);
 spectrum perturbed_albedo(const struct closure *closure);

@@ -75,6 +75,12 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
     return true;
 }
 
+static const struct closure *inside(const struct closure *closure, vec3 *wi, float *factor) {
+    (void)factor;
+    *wi = mirror(*wi);
+    return ((const struct twosided_data *)(const void *)closure)->child;
+}
+
 static spectrum albedo(const struct closure *closure) {
     const struct twosided_data *c = (const void *)closure;
     return closure_albedo(c->child);
@@ -84,6 +90,6 @@ const struct bsdf_type bsdf_twosided = {
     .entry = {.name = "twosided", .help = "one-sided materials on both sides", .params = params,
               .size = sizeof(struct twosided)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
-    .prepare = prepare, .lobes = lobes, .resolve = resolve, .is_lambert = is_lambert, .eval = eval, .sample = sample,
-    .albedo = albedo,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .is_lambert = is_lambert,
+    .eval = eval, .sample = sample, .albedo = albedo, .inside = inside,
 };

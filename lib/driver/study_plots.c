@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plots of a study: relMSE over samples (or what else was varied), seconds and memory.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -88,13 +89,19 @@ void study_plot(const struct study *study, enum study_axis axis, int width, int 
 }
 
 static bool write_plot(const struct study *study, enum study_axis axis) {
-    struct file_text t;
-    char path[4096];
+    char *text = NULL, path[4096];
+    size_t size;
+    FILE *f = open_memstream(&text, &size);
     snprintf(path, sizeof path, "%s/error-%s.svg", study->options->directory, axis_name(study, axis));
-    if (!file_text_begin(&t, path))
+    if (!f) {
+        log_error("%s: no memory to write it", path);
         return false;
-    study_plot(study, axis, WIDTH, HEIGHT, t.f);
-    return file_text_end(&t);
+    }
+    study_plot(study, axis, WIDTH, HEIGHT, f);
+    fclose(f);
+    const bool good = file_write(path, text, size);
+    free(text);
+    return good;
 }
 
 bool study_write_plots(const struct study *study) {

@@ -15,7 +15,8 @@
 //     N.halves   same                half their difference; absent where the tensor has no noise
 //     N.view     F32 [tiles, 64]     angle between normal and eye for f_o, radians; or absent
 //     N.weights  F32 [coefficients, channels]   the weights of the scene as it was; or absent
-//     N.edges0   F64 [bins + 1]      bin edges of the first axis, radians (N.edges1: of the second)
+//     N.edges0   F64 [bins + 1]      bin edges of the first axis, radians (N.edges1: of the second);
+//                    [bins]          of a hat basis: its nodes
 //
 // and "fixed" F32 [3, height, width], what no weight changes; or absent. Tiles are 64 pixels in the
 // order of the list; lanes beyond its end are zero. The order of coefficients is (group, bin of
@@ -39,14 +40,18 @@ enum tensor_storage { TENSOR_F32, TENSOR_BF16 };
 
 enum tensor_basis { TENSOR_BOX, TENSOR_HAT };
 
-// One variable of a curve: bins of an angle (curve/angles.h), radians. A hat basis has its nodes at
-// the centres of the bins.
+// One variable of a curve: bins of an angle (curve/angles.h), radians, or nodes of a hat basis, with
+// knots as in curve/basis.h.
 struct tensor_axis {
     const char *name; // parametrisation: "theta_h", ...; or what the coefficients are: "light"
     enum tensor_basis basis;
     uint32_t bins;
-    const double *edges; // bins + 1, increasing; NULL where bins are not intervals
+    const double *edges; // tensor_edges(axis), increasing; NULL where bins are not intervals
 };
+
+static inline uint64_t tensor_edges(const struct tensor_axis *a) {
+    return (uint64_t)a->bins + (a->basis == TENSOR_BOX);
+}
 
 struct tensor_block {
     const char *object, *term; // as `relume edit --list` shows them

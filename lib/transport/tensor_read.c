@@ -162,11 +162,11 @@ static bool read_axis(struct tensor_file *f, const struct json *j, uint32_t bloc
     if (!has_edges)
         return true;
     const struct array edges = {array_name(f, block, which ? "edges1" : "edges0"), "F64", 1,
-                                {bins + 1}};
+                                {tensor_edges(a)}};
     a->edges = find_array(f, &edges, true, &wrong);
     if (wrong)
         return false;
-    for (uint64_t i = 0; i <= bins; i++)
+    for (uint64_t i = 0; i < tensor_edges(a); i++)
         if (!isfinite(a->edges[i]) || (i && !(a->edges[i] > a->edges[i - 1])))
             return fail(f, "array %s: edge %" PRIu64 " does not lie above the one before",
                         edges.name, i);

@@ -114,7 +114,7 @@ static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
     const size_t item = tensor_value_size(b->storage);
     add_small(p, i, "pixels", "U32", 4, &b->pixel_count, 1, b->pixels, b->pixel_count * 4);
     for (uint32_t a = 0; a < b->axis_count; a++) {
-        const uint64_t edges = (uint64_t)b->axes[a].bins + 1;
+        const uint64_t edges = tensor_edges(&b->axes[a]);
         if (b->axes[a].edges)
             add_small(p, i, a ? "edges1" : "edges0", "F64", 8, &edges, 1, b->axes[a].edges, edges * 8);
     }
