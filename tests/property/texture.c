@@ -264,6 +264,53 @@ static void remove_folder(void) {
     rmdir(folder);
 }
 
+// A second set of coordinates that is (2 v + 0.3, u - v) everywhere.
+static void other_coordinates_are_looked_up(void) {
+    struct arena arena = {0};
+    float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    float uvs[4][2] = {{0.1f, 0.2f}, {0.9f, 0.1f}, {0.8f, 0.7f}, {0.2f, 0.9f}}, second[8];
+    uint32_t indices[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    for (int i = 0; i < 4; i++) {
+        second[2 * i] = 2 * uvs[i][1] + 0.3f;
+        second[2 * i + 1] = uvs[i][0] - uvs[i][1];
+    }
+    struct mesh_attribute attribute = {"vertex_uv1", 2, false, second};
+    const struct mesh mesh = {.vertex_count = 4, .triangle_count = 2, .positions = positions,
+                              .uvs = uvs, .indices = indices, .attributes = &attribute,
+                              .attribute_count = 1};
+    struct image im = {0};
+    make_picture(&im, 1, 14, 1 / 256.0f);
+    CHECK(image_write_exr(path_of("u.exr"), &im, NULL));
+    struct object *picture = make_texture(
+        &arena, "bitmap", arena_printf(&arena, "filename=%s", path_of("u.exr")), NULL);
+    const struct object *const children[] = {picture, NULL};
+    struct object *o = make_texture(&arena, "uvmap", "", children);
+    const struct texture_ref ref = {.texture = o}, direct = {.texture = picture};
+    struct rng rng = {15};
+    for (int k = 0; k < 1000; k++) {
+        struct texture_point at = {.mesh = &mesh, .triangle = (uint32_t)k % 2};
+        const float a = rng_float(&rng), b = rng_float(&rng) * (1 - a);
+        at.barycentric = (struct vec2){a, b};
+        const uint32_t *t = indices[at.triangle];
+        for (int c = 0; c < 2; c++)
+            (c ? &at.uv.y : &at.uv.x)[0] =
+                (1 - a - b) * uvs[t[0]][c] + a * uvs[t[1]][c] + b * uvs[t[2]][c];
+        const struct texture_point there = at_uv(2 * at.uv.y + 0.3f, at.uv.x - at.uv.y);
+        CHECK_NEAR(texture_eval(&ref, &at)[0], texture_eval(&direct, &there)[0], 1e-5);
+        const struct vec2 g = texture_gradient(&ref, &at), h = texture_gradient(&direct, &there);
+        const float x = there.uv.x * WIDTH - 0.5f, y = there.uv.y * HEIGHT - 0.5f;
+        if (fabsf(x - rintf(x)) < 1e-3f || fabsf(y - rintf(y)) < 1e-3f)
+            continue; // the gradient jumps at pixel centres
+        CHECK_NEAR(g.x, h.y, 1e-4);
+        CHECK_NEAR(g.y, 2 * h.x - h.y, 1e-4);
+    }
+    const struct texture_point bare = at_uv(0.4f, 0.6f);
+    CHECK(texture_eval(&ref, &bare)[0] == texture_eval(&direct, &bare)[0]);
+    finish(picture);
+    image_finish(&im);
+    arena_finish(&arena);
+}
+
 int main(void) {
     if (!mkdtemp(folder))
         return 1;
@@ -274,6 +321,7 @@ int main(void) {
     bad_pictures_are_refused();
     checkerboard_alternates();
     mesh_values_are_interpolated();
+    other_coordinates_are_looked_up();
     remove_folder();
     return check_result();
 }
