@@ -80,7 +80,7 @@ static bool add_emitter(struct building *b, struct xml_node *shape,
     struct xml_node *product = tree_add(b->r, light, "texture", "product", NULL);
     xml_set(product, "name", "radiance", b->r->arena);
     tree_triple(b->r, product, "rgb", "texture_1", m->emission);
-    const struct gltf_texture_use use = {"texture_0", NULL, false};
+    const struct gltf_texture_use use = {"texture_0", NULL, false, m->wants.uv_set};
     return gltf_add_texture(b->g, b->r, product, m->emission_texture, &use);
 }
 

@@ -77,8 +77,11 @@ uint32_t *gltf_read_indices(const struct gltf *g, const struct json *accessor);
 
 // What a material wants of a mesh.
 struct gltf_mesh_wants {
-    int uv_set;
+    int uv_set;        // TEXCOORD_n that is the mesh's own
+    uint64_t more_uvs; // bit n: TEXCOORD_n, as attribute vertex_uvn
 };
+
+enum { GLTF_MOST_UV_SETS = 64 };
 
 // The triangles of a primitive. false: there are none to draw (said in a warning), or *failed
 // after an error message.
@@ -92,7 +95,11 @@ struct gltf_texture_use {
     const char *name;    // of the parameter
     const char *channel; // "r", "g", ...: only that one; or NULL
     bool raw;            // numbers, not colours
+    int uv_set;          // TEXCOORD_n that is the mesh's own
 };
+
+// Number of the set of coordinates that a textureInfo looks up by.
+int gltf_uv_set(const struct json *info);
 
 // An element for a textureInfo, appended to parent. false after an error message.
 bool gltf_add_texture(struct gltf *g, struct reader *r, struct xml_node *parent,

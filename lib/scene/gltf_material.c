@@ -20,6 +20,7 @@
 //   KHR_materials_anisotropy              principled: anisotropic; a metal: roughconductor
 //   KHR_materials_dispersion, iridescence nothing: one warning
 //   KHR_texture_transform                 to_uv of the bitmap
+//   texCoord other than the material's    uvmap: vertex_uvN
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -42,11 +43,12 @@ static const struct json *texture_of(const struct making *m, const struct json *
     const struct json *info = json_get(object, key);
     if (!info)
         return NULL;
-    const struct json *moved = gltf_extension(info, "KHR_texture_transform");
-    const int set = (int)gltf_number(moved, "texCoord", gltf_number(info, "texCoord", 0));
-    if (set != m->out->wants.uv_set)
-        gltf_warn(m->g, "a material looks up %s by TEXCOORD_%d and others by TEXCOORD_%d, which "
-                  "takes its place: a mesh has one set here", key, set, m->out->wants.uv_set);
+    const int set = gltf_uv_set(info), own = m->out->wants.uv_set;
+    if (set != own && set < GLTF_MOST_UV_SETS)
+        m->out->wants.more_uvs |= (uint64_t)1 << set;
+    if (set != own && strcmp(key, "normalTexture") == 0)
+        gltf_warn(m->g, "a normal map is looked up by TEXCOORD_%d, but its tangents follow "
+                  "TEXCOORD_%d", set, own);
     return info;
 }
 
@@ -69,7 +71,7 @@ static void add_constant(const struct making *m, struct xml_node *parent, const 
 static bool add_factor(const struct making *m, struct xml_node *parent, const char *name,
                        const double *factor, int channels, const struct json *info,
                        const char *channel, bool raw) {
-    struct gltf_texture_use use = {name, channel, raw};
+    struct gltf_texture_use use = {name, channel, raw, m->out->wants.uv_set};
     if (!info) {
         add_constant(m, parent, name, factor, channels);
         return true;
@@ -274,7 +276,7 @@ static bool has_alpha(const struct making *m) {
 static bool add_normal_map(const struct making *m, struct xml_node *node,
                            const struct json *info) {
     const double s = gltf_number(info, "scale", 1);
-    struct gltf_texture_use use = {"normalmap", NULL, true};
+    struct gltf_texture_use use = {"normalmap", NULL, true, m->out->wants.uv_set};
     if (s == 1 || s < 0)
         return gltf_add_texture(m->g, m->r, node, info, &use);
     const double factor[3] = {s, s, 1}, offset[3] = {(1 - s) / 2, (1 - s) / 2, 0};
@@ -375,8 +377,7 @@ static int main_uv_set(const struct json *material) {
                                   json_get(pbr, "metallicRoughnessTexture")};
     for (size_t i = 0; i < sizeof infos / sizeof *infos; i++)
         if (infos[i])
-            return (int)gltf_number(gltf_extension(infos[i], "KHR_texture_transform"), "texCoord",
-                                    gltf_number(infos[i], "texCoord", 0));
+            return gltf_uv_set(infos[i]);
     return 0;
 }
 

@@ -67,18 +67,31 @@ static void read_normals(struct gltf *g, const struct json *primitive, const cha
     m->normals = NULL;
 }
 
-static void read_uvs(struct gltf *g, const struct json *primitive, const char *at, int set,
-                     struct mesh *m) {
+// Two numbers per vertex; NULL: there are none.
+static float *read_uvs(struct gltf *g, const struct json *primitive, const char *at, int set,
+                       const struct mesh *m) {
     const struct json *a = attribute(g, primitive, arena_printf(g->arena, "TEXCOORD_%d", set));
     if (!a)
-        return;
+        return NULL;
     float *uvs = gltf_read_floats(g, a, 2);
-    if (all_finite(uvs, 2 * (size_t)m->vertex_count)) {
-        m->uvs = (float(*)[2])(void *)uvs;
-        return;
-    }
+    if (all_finite(uvs, 2 * (size_t)m->vertex_count))
+        return uvs;
     gltf_warn(g, "%s: TEXCOORD_%d is not finite and is dropped", at, set);
     mem_free(uvs);
+    return NULL;
+}
+
+// TEXCOORD_n becomes the attribute vertex_uvn.
+static void read_more_uvs(struct gltf *g, const struct json *primitive, const char *at,
+                          uint64_t sets, struct mesh *m) {
+    for (int set = 0; set < GLTF_MOST_UV_SETS; set++) {
+        float *uvs = sets >> set & 1 ? read_uvs(g, primitive, at, set, m) : NULL;
+        if (!uvs)
+            continue;
+        struct mesh_attribute *out = &m->attributes[m->attribute_count++];
+        *out = (struct mesh_attribute){.channels = 2, .data = uvs};
+        snprintf(out->name, sizeof out->name, "vertex_uv%d", set);
+    }
 }
 
 // COLOR_0 becomes the attributes vertex_color, and vertex_alpha where it has four components.
@@ -88,10 +101,8 @@ static void read_colours(struct gltf *g, const struct json *primitive, struct me
         return;
     const bool alpha = strcmp(json_text(json_get(a, "type")), "VEC4") == 0;
     float *all = gltf_read_floats(g, a, 4);
-    m->attributes = mem_array(2, sizeof *m->attributes);
-    m->attribute_count = alpha ? 2 : 1;
-    for (uint32_t k = 0; k < m->attribute_count; k++) {
-        struct mesh_attribute *out = &m->attributes[k];
+    for (uint32_t k = 0; k < (alpha ? 2 : 1); k++) {
+        struct mesh_attribute *out = &m->attributes[m->attribute_count++];
         out->channels = k ? 1 : 3;
         snprintf(out->name, sizeof out->name, k ? "vertex_alpha" : "vertex_color");
         out->data = mem_array((size_t)m->vertex_count * (size_t)out->channels, sizeof(float));
@@ -133,8 +144,12 @@ bool gltf_read_primitive(struct gltf *g, const struct json *primitive, const cha
     make_triangles(m, mode, list, corners);
     mem_free(list);
     read_normals(g, primitive, at, m);
-    read_uvs(g, primitive, at, wants->uv_set, m);
+    m->uvs = (float(*)[2])(void *)read_uvs(g, primitive, at, wants->uv_set, m);
+    const int more = __builtin_popcountll(wants->more_uvs);
+    if (more || attribute(g, primitive, "COLOR_0"))
+        m->attributes = mem_array(2 + (size_t)more, sizeof *m->attributes);
     read_colours(g, primitive, m);
+    read_more_uvs(g, primitive, at, wants->more_uvs, m);
     warn_of_poses(g, primitive);
     if (!*failed && m->triangle_count > 0)
         return true;

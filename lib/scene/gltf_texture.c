@@ -79,6 +79,11 @@ static int64_t source_of(const struct json *texture) {
     return gltf_index(gltf_extension(texture, "EXT_texture_webp"), "source");
 }
 
+int gltf_uv_set(const struct json *info) {
+    return (int)gltf_number(gltf_extension(info, "KHR_texture_transform"), "texCoord",
+                            gltf_number(info, "texCoord", 0));
+}
+
 bool gltf_add_texture(struct gltf *g, struct reader *r, struct xml_node *parent,
                       const struct json *info, const struct gltf_texture_use *use) {
     const struct json *texture = gltf_item(g, "textures", (size_t)gltf_index(info, "index"));
@@ -92,8 +97,16 @@ bool gltf_add_texture(struct gltf *g, struct reader *r, struct xml_node *parent,
     const char *name = image_name(g, (size_t)source);
     if (!name)
         return false;
+    const char *parameter = use->name;
+    if (gltf_uv_set(info) != use->uv_set) {
+        parent = tree_add(r, parent, "texture", "uvmap", NULL);
+        xml_set(parent, "name", parameter, r->arena);
+        tree_text(r, parent, "string", "attribute",
+                  arena_printf(r->arena, "vertex_uv%d", gltf_uv_set(info)));
+        parameter = "texture";
+    }
     struct xml_node *node = tree_add(r, parent, "texture", "bitmap", NULL);
-    xml_set(node, "name", use->name, r->arena);
+    xml_set(node, "name", parameter, r->arena);
     tree_text(r, node, "string", "filename", name);
     if (use->channel)
         tree_text(r, node, "string", "channel", use->channel);

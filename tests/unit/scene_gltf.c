@@ -61,6 +61,35 @@ static void reads_cameras_lights_and_emission(void) {
     scene_destroy(s);
 }
 
+// A picture of one white pixel.
+#define PIXEL                                                                                      \
+    "\"images\":[{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAA" \
+    "DElEQVR4nGP4//8/AAX+Av4N70a4AAAAAElFTkSuQmCC\"}],\"textures\":[{\"source\":0}],"
+
+static void reads_two_sets_of_coordinates(void) {
+    struct scene *s = read_model(
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"buffers\":[{\"byteLength\":36,\"uri\":"
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]},"
+        "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"},"
+        "{\"bufferView\":0,\"byteOffset\":12,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
+        PIXEL "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":1,"
+        "\"TEXCOORD_1\":2},\"material\":0}]}],\"materials\":[{\"pbrMetallicRoughness\":{"
+        "\"baseColorTexture\":{\"index\":0},\"metallicRoughnessTexture\":{\"index\":0,\"texCoord\":1}"
+        "}}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}");
+    CHECK(s && s->shape_count == 1);
+    if (!s)
+        return;
+    const struct mesh *m = &s->shapes[0].mesh;
+    const struct mesh_attribute *second = mesh_find_attribute(m, "vertex_uv1");
+    CHECK(m->uvs && m->uvs[1][1] == 1); // the fourth number of the buffer
+    CHECK(second && second->channels == 2 && second->data[0] == 1 && second->data[5] == 0);
+    CHECK(second && second->data[4] == 1);
+    CHECK(!captured_has("TEXCOORD"));
+    scene_destroy(s);
+}
+
 static void refuses_with_a_pointer(void) {
     CHECK(!read_model("{" TRIANGLE MESH "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}"));
     CHECK(captured_has("model.gltf: /meshes/0/primitives/0/material: is 0"));
@@ -74,6 +103,7 @@ int main(void) {
     frames_and_lights_a_bare_model();
     shares_a_mesh_by_instances();
     reads_cameras_lights_and_emission();
+    reads_two_sets_of_coordinates();
     refuses_with_a_pointer();
     scene_folder_close();
     return check_result();
