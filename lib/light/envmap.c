@@ -96,6 +96,10 @@ static float power(const void *data) {
     return light_power_infinite((float)e->table.mean * e->scale, e->radius);
 }
 
+static float detail(const void *data) {
+    return PI / (float)(((const struct envmap *)data)->table.height);
+}
+
 static void finish(void *data) {
     sphere_table_finish(&((struct envmap *)data)->table);
 }
@@ -105,5 +109,5 @@ const struct light_type light_envmap = {
               .params = params, .size = sizeof(struct envmap)},
     .infinite = true,
     .prepare = prepare, .sample = sample, .emission = emission, .pdf_sa = pdf_sa, .power = power,
-    .finish = finish,
+    .detail = detail, .finish = finish,
 };

@@ -70,6 +70,8 @@ struct light_type {
     spectrum (*emission)(const void *data, const struct light_hit *hit);
     // sample's density of finding this point of the light from p. NULL for delta lights.
     float (*pdf_sa)(const void *data, vec3 p, const struct light_hit *hit);
+    // Of infinite lights: radians between texels, or across the smallest feature. NULL: smooth.
+    float (*detail)(const void *data);
     // Mean emitted power in W (luminance), an estimate for choosing lights.
     float (*power)(const void *data);
     // Where a part stands and whither it shines, for choosing lights by the place they light. A

@@ -299,6 +299,10 @@ static float power(const void *data) {
     return light_power_infinite(s->mean, s->radius);
 }
 
+static float detail(const void *data) {
+    return ((const struct sunsky *)data)->half_aperture;
+}
+
 static void finish(void *data) {
     struct sunsky *s = data;
     distribution_finish(&s->rows);
@@ -311,5 +315,5 @@ const struct light_type light_sunsky = {
               .params = params, .size = sizeof(struct sunsky)},
     .infinite = true,
     .prepare = prepare, .sample = sample, .aim = aim, .emission = emission, .pdf_sa = pdf_sa, .power = power,
-    .finish = finish,
+    .detail = detail, .finish = finish,
 };

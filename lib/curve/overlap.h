@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a spherical triangle of light is dealt to the functions of a curve's basis (Ben-Artzi 2007,
+// 4.2.1, eq. 4.9 to 4.12):
+//
+//     Delta_j = integral of b_j(gamma(w)) dw over the triangle / its solid angle
+//
+// gamma is taken to be linear over a triangle whose gammas at the corners are g0 <= g1 <= g2. The
+// share of the area below t is then
+//
+//     F(t) = (t - g0)^2 / ((g1 - g0)(g2 - g0))       up to g1
+//          = 1 - (g2 - t)^2 / ((g2 - g1)(g2 - g0))   from there
+//
+// A box has F(upper edge) - F(lower edge), a hat the like with first moments. Where gamma bends the
+// triangle is split at the middles of its edges. With two curves a part has the product of its
+// shares; parts are split until they lie between two knots of either axis, or `splits` times.
+//
+// Conventions: gammas that fold (those of slopes and powers) are signed here, so that they run on
+// smoothly where they are 0; a share counts for |gamma|. What lies beyond the last knot belongs to
+// the last function, but for theta_r, whose curves end there.
+#pragma once
+
+#include "curve/angles.h"
+#include "curve/basis.h"
+
+enum { OVERLAP_CORNERS = 3, OVERLAP_NODES = 6, OVERLAP_AXES = 2, OVERLAP_CHANNELS = 3 };
+
+struct overlap_axis {
+    struct gamma gamma;
+    struct basis basis;
+    double per_step; // intervals a radian, of evenly spaced knots; 0: others
+};
+
+// What lights are added to.
+struct overlap {
+    uint32_t axes; // 0 to 2
+    struct overlap_axis axis[OVERLAP_AXES];
+    double tolerance; // of a share of the triangle; 1e-3
+    int depth;        // most splits; 6
+    int splits;       // most further ones for the sake of two curves; 1
+    double *share[OVERLAP_AXES]; // scratch, a number for each function
+    double *sums;     // [functions of axis 0][of axis 1][3]
+};
+
+// A triangle: directions at its corners, then in the middle of the edges from corner i to the next;
+// and what of it lies at each corner and between the middles (sum 1).
+struct overlap_triangle {
+    double node[OVERLAP_NODES][3];
+    double part[4];
+};
+
+void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXES],
+                  const struct basis *const basis[OVERLAP_AXES], uint32_t axes,
+                  struct arena *arena);
+
+// gamma as used here.
+double overlap_gamma(const struct gamma *g, struct angles *a);
+
+// Adds light * Delta to the sums; gamma: overlap_gamma at the nodes, by axis.
+void overlap_add(struct overlap *o, const double wo[3], const struct overlap_triangle *t,
+                 double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]);
+
+// The same of a point.
+void overlap_add_point(struct overlap *o, const double gamma[OVERLAP_AXES],
+                       const double light[OVERLAP_CHANNELS]);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sky as triangles of constant radiance (Ben-Artzi 2007, 4.2.3): an octahedron whose triangles
+// are split in four, always the one of greatest
+//
+//     radiance integrated over it * min(solid angle, 0.01 sr)^(1/4)
+//
+// (the metric of structured importance sampling, Agarwal et al. 2003), until there are enough.
+// Unlike points they keep the angles over which light arrives, without which a sharp highlight shows
+// every light as a dot.
+//
+// Conventions: directions towards the light, world space. Triangles stand in the order of the tree,
+// so that neighbours in the list are neighbours in the sky. Those without light are left out.
+#pragma once
+
+#include "math/direction.h"
+#include "math/vec.h"
+
+struct light_triangle {
+    struct direction corner[3], middle[3]; // middle[i] is that of the edge from corner i to the next
+    struct direction centre;
+    double solid_angle;
+    double power[3]; // radiance integrated over it, per channel
+};
+
+struct light_triangles {
+    struct light_triangle *items; // owned
+    uint32_t count;
+    double power[3]; // sum
+};
+
+// Radiance from a direction, all infinite lights together.
+struct sky {
+    spectrum (*radiance)(const void *ctx, vec3 w);
+    const void *ctx;
+    double detail; // radians: smallest distance between texels; 0: smooth
+};
+
+// At most `most` triangles (at least 8). The integral of the radiance is kept by every split; it is
+// measured at points twice as dense as the details, and far more where it matters.
+void light_triangles_init(struct light_triangles *t, const struct sky *sky, uint32_t most,
+                          int threads);
+void light_triangles_finish(struct light_triangles *t);
+
+// Between the directions of a spherical triangle.
+double solid_angle_within(const struct direction corner[3]);
