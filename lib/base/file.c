@@ -107,6 +107,23 @@ bool file_write(const char *path, const void *data, size_t size) {
     return file_commit(temp, path);
 }
 
+bool file_text_begin(struct file_text *t, const char *path) {
+    *t = (struct file_text){.path = path};
+    t->f = open_memstream(&t->text, &t->size);
+    if (!t->f)
+        log_error("%s: no memory to write it", path);
+    return t->f;
+}
+
+bool file_text_end(struct file_text *t) {
+    const bool whole = fclose(t->f) == 0;
+    if (!whole)
+        log_error("%s: no memory to write it", t->path);
+    const bool written = whole && file_write(t->path, t->text, t->size);
+    free(t->text);
+    return written;
+}
+
 void file_directory(const char *path, char *out, size_t n) {
     const char *slash = strrchr(path, '/');
     if (!slash)

@@ -8,6 +8,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 // The whole file and a terminating zero byte; free with mem_free. NULL after an error message.
 // A file above `limit` bytes (0: 4 GiB) is refused.
@@ -24,6 +25,18 @@ bool file_commit(const char *temp, const char *path);
 void file_discard(const char *temp);
 // Writes a complete small file atomically.
 bool file_write(const char *path, const void *data, size_t size);
+
+// A text that is composed in memory and then written as one such file.
+struct file_text {
+    const char *path;
+    FILE *f; // where it is printed to
+    char *text;
+    size_t size;
+};
+
+// `path` must stay until the end. false after an error message.
+bool file_text_begin(struct file_text *t, const char *path);
+bool file_text_end(struct file_text *t);
 
 // Part of path before the last '/', without it ("." if none), into out (size n).
 void file_directory(const char *path, char *out, size_t n);

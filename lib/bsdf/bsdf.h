@@ -145,6 +145,9 @@ static inline spectrum closure_eval(const struct closure *c, vec3 wi, float *pdf
     return c->type->eval(c, wi, pdf_sa);
 }
 
+// The eval of materials that are delta functions: 0 everywhere.
+spectrum closure_eval_delta(const struct closure *c, vec3 wi, float *pdf_sa);
+
 static inline bool closure_sample(const struct closure *c, float u1, struct vec2 u2,
                                   struct bsdf_sample *s) {
     return c->type->sample(c, u1, u2, s);

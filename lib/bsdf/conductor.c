@@ -66,13 +66,6 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
                              texture_eval(&self->reflectance, &point->at), wo, stack);
 }
 
-static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
-    (void)closure;
-    (void)wi;
-    *pdf_sa = 0;
-    return spectrum_grey(0);
-}
-
 static bool sample(const struct closure *closure, float u1, struct vec2 u2,
                    struct bsdf_sample *s) {
     const struct conductor_data *c = (const void *)closure;
@@ -90,6 +83,6 @@ const struct bsdf_type bsdf_conductor = {
     .entry = {.name = "conductor", .help = "smooth metal", .params = params,
               .size = sizeof(struct conductor)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY | CLAIM_LOSSLESS,
-    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = closure_eval_delta, .sample = sample,
     .albedo = albedo,
 };

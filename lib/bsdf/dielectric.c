@@ -65,13 +65,6 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
                               texture_eval(&self->transmittance, &point->at), wo, stack);
 }
 
-static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
-    (void)closure;
-    (void)wi;
-    *pdf_sa = 0;
-    return spectrum_grey(0);
-}
-
 static bool sample(const struct closure *closure, float u1, struct vec2 u2,
                    struct bsdf_sample *s) {
     const struct dielectric_data *c = (const void *)closure;
@@ -102,6 +95,6 @@ const struct bsdf_type bsdf_dielectric = {
     .entry = {.name = "dielectric", .help = "smooth boundary of glass, water, ...",
               .params = params, .size = sizeof(struct dielectric)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY | CLAIM_LOSSLESS,
-    .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample, .albedo = albedo,
+    .lobes = lobes, .resolve = resolve, .eval = closure_eval_delta, .sample = sample, .albedo = albedo,
     .null_transmittance = null_transmittance,
 };

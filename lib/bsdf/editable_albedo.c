@@ -15,15 +15,7 @@ struct probe {
 static spectrum term_value(const struct form *f, const struct form_term *t,
                            struct angles *a) {
     double v[CURVE_CHANNELS];
-    quotient_cos(&t->quotient, a, v);
-    for (int s = 0; s < SLOTS; s++) {
-        const struct form_slot *slot = &t->slots[s];
-        if (slot->gamma.kind == GAMMA_NONE)
-            continue;
-        const double gamma = gamma_at(&slot->gamma, a);
-        for (int k = 0; k < CURVE_CHANNELS; k++)
-            v[k] *= function_value(&f->curve[slot->curve].f[k], gamma);
-    }
+    form_term_eval(f, t, a, v);
     return spectrum_rgb((float)fmin(v[0], 1e30), (float)fmin(v[1], 1e30), (float)fmin(v[2], 1e30));
 }
 

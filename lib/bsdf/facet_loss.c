@@ -151,7 +151,7 @@ float facet_loss_pdf_sa(const struct facet_loss_at *at, vec3 v) {
 
 void facet_loss_share(float eta, float mean1, float mean2, float *share12, float *share21) {
     const float most = maxf(mean1, mean2);
-    const float smooth = (float)(1 - fresnel_dielectric_average((double)eta));
+    const float smooth = (float)fresnel_dielectric_transmitted((double)eta);
     const float through = most > 0 ? smooth / most : 0;
     *share12 = through * mean2;
     *share21 = through / (eta * eta) * mean1;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bsdf/half_sampler.h"
 
+#include "math/distribution.h"
 #include "math/frame.h"
 #include "math/warp.h"
 
@@ -109,21 +110,6 @@ spectrum half_sampler_albedo(const struct half_sampler *s, const struct slice_mi
     return sum;
 }
 
-// The cell that holds u, and where in its interval u stands.
-static int find_cell(const float *cdf, float u, float *remapped) {
-    int lo = 0, hi = HALF_CELLS;
-    while (hi - lo > 1) {
-        const int middle = (lo + hi) / 2;
-        if (cdf[middle] <= u)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    const float width = cdf[lo + 1] - cdf[lo];
-    *remapped = width > 0 ? clampf((u - cdf[lo]) / width, 0, 1 - 0x1p-24f) : 0.5f;
-    return lo;
-}
-
 vec3 half_sampler_sample(const struct half_sampler *s, const struct slice_mix *mix, vec3 wo,
                          float u1, struct vec2 u2) {
     if (u1 < COSINE_SHARE)
@@ -132,7 +118,7 @@ vec3 half_sampler_sample(const struct half_sampler *s, const struct slice_mix *m
     int k = 0;
     while (k + 1 < mix->count && u >= mix->weight[k])
         u -= mix->weight[k++];
-    const int cell = find_cell(s->cdf[mix->slice[k]], u2.x, &across);
+    const int cell = (int)cdf_find(s->cdf[mix->slice[k]], HALF_CELLS, u2.x, &across);
     const int ring = cell / HALF_SECTORS, sector = cell % HALF_SECTORS;
     const float around = ((float)sector + u2.y) * (1.0f / HALF_SECTORS);
     const vec3 h = half_vector(lerpf(across, s->ring[ring], s->ring[ring + 1]), around, turn_of(wo));

@@ -19,7 +19,7 @@ struct plastic_data {
     spectrum diffuse;  // f / (1 - F(wi)), times pi
     float eta;
     float p_specular;  // probability of the mirror direction
-    float transmitted; // 1 - average Fresnel reflectance from outside
+    float entering;    // of diffuse light
 };
 
 static const struct param params[] = {
@@ -41,10 +41,10 @@ const struct closure *plastic_closure(const struct plastic_coat *coat, spectrum 
     const float F = fresnel_dielectric(cos_theta(wo), coat->eta, &cos_t);
     c->reflected = v3(-wo[0], -wo[1], wo[2]);
     c->specular = F * specular;
-    c->diffuse = plastic_base(diffuse, coat->fresnel_in, coat->nonlinear, coat->eta) * (1 - F);
+    c->diffuse = plastic_base(diffuse, coat) * (1 - F);
     c->eta = coat->eta;
-    c->transmitted = 1 - coat->fresnel_out;
-    const float s = spectrum_mean(c->specular), d = spectrum_mean(c->diffuse) * c->transmitted;
+    c->entering = coat->entering;
+    const float s = spectrum_mean(c->specular), d = spectrum_mean(c->diffuse) * c->entering;
     c->p_specular = s + d > 0 ? s / (s + d) : 0;
     return &c->head;
 }
@@ -53,8 +53,9 @@ static bool prepare(struct object *self, struct arena *arena) {
     struct plastic *p = self->data;
     const float eta = p->index.int_ior / p->index.ext_ior;
     (void)arena;
-    p->coat = (struct plastic_coat){eta, (float)fresnel_dielectric_average(eta),
-                                    (float)fresnel_dielectric_average(1.0 / eta), p->nonlinear};
+    p->coat = (struct plastic_coat){eta, (float)fresnel_dielectric_transmitted(eta),
+                                    (float)fresnel_dielectric_transmitted(1.0 / eta),
+                                    p->nonlinear};
     return true;
 }
 
@@ -104,7 +105,7 @@ static bool sample(const struct closure *closure, float u1, struct vec2 u2,
 
 static spectrum albedo(const struct closure *closure) {
     const struct plastic_data *c = (const void *)closure;
-    return c->specular + c->diffuse * c->transmitted;
+    return c->specular + c->diffuse * c->entering;
 }
 
 const struct bsdf_type bsdf_plastic = {

@@ -11,6 +11,7 @@
 #include "bsdf/principled.h"
 #include "bsdf/rough_boundary.h"
 #include "math/fresnel.h"
+#include "math/ior.h"
 #include "math/warp.h"
 
 struct principled {
@@ -43,8 +44,8 @@ static const struct param params[] = {
     PRINCIPLED_BASE_PARAMS(struct principled),
     {"metallic", PARAM_TEXTURE_SCALAR, offsetof(struct principled, metallic), .def = "0",
      .max = 1, .unit = "", .help = "from dielectric (0) to metal (1)"},
-    {"eta", PARAM_FLOAT, offsetof(struct principled, eta), .def = "-1", .min = -1, .max = 100,
-     .unit = "", .help = "index inside over index outside (-1: from specular)"},
+    {"eta", PARAM_FLOAT, offsetof(struct principled, eta), .def = "-1", .min = -1,
+     .max = IOR_MOST, .unit = "", .help = "index inside over index outside (-1: from specular)"},
     {"specular", PARAM_FLOAT, offsetof(struct principled, specular), .def = "-1", .min = -1,
      .max = 1, .unit = "", .help = "reflectance at the normal, 1 for 8 % (-1: 0.5)"},
     {"clearcoat", PARAM_TEXTURE_SCALAR, offsetof(struct principled, clearcoat), .def = "0",
@@ -69,9 +70,9 @@ static bool prepare(struct object *object, struct arena *arena) {
                      object->type->name);
         return false;
     }
-    if (self->eta >= 0 && self->eta < 0.01f) {
-        log_error_at(object->at, "%s: eta is %g, expected 0.01 to 100", object->type->name,
-                     (double)self->eta);
+    if (self->eta >= 0 && self->eta < IOR_LEAST) {
+        log_error_at(object->at, "%s: eta is %g, expected %g to %g", object->type->name,
+                     (double)self->eta, (double)IOR_LEAST, (double)IOR_MOST);
         return false;
     }
     const float specular = self->specular >= 0 ? self->specular : 0.5f;

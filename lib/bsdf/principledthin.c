@@ -9,6 +9,7 @@
 // is not exact there.
 #include "bsdf/principled.h"
 #include "math/fresnel.h"
+#include "math/ior.h"
 #include "math/warp.h"
 
 struct principledthin {
@@ -40,8 +41,9 @@ struct thin_data {
 
 static const struct param params[] = {
     PRINCIPLED_BASE_PARAMS(struct principledthin),
-    {"eta", PARAM_TEXTURE_SCALAR, offsetof(struct principledthin, eta), .def = "1.5", .min = 0.01,
-     .max = 100, .unit = "", .help = "index of the sheet over the one around it"},
+    {"eta", PARAM_TEXTURE_SCALAR, offsetof(struct principledthin, eta), .def = "1.5",
+     .min = IOR_LEAST, .max = IOR_MOST, .unit = "",
+     .help = "index of the sheet over the one around it"},
     {"diff_trans", PARAM_TEXTURE_SCALAR, offsetof(struct principledthin, diff_trans), .def = "0",
      .max = 2, .unit = "", .help = "from diffuse reflection (0) to diffuse transmission (2)"},
     PRINCIPLED_RATE_PARAM(struct principledthin, diffuse_reflection_rate,
@@ -116,7 +118,7 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     const spectrum base = texture_eval(&self->base_color, at);
     c->mirrored = cos_theta(wo) < 0;
     c->wo = v3(wo[0], wo[1], fabsf(wo[2]));
-    c->eta = clampf(texture_eval_scalar(&self->eta, at), 0.01f, 100);
+    c->eta = clampf(texture_eval_scalar(&self->eta, at), IOR_LEAST, IOR_MOST);
     c->roughness = principled_share(&self->roughness, at);
     resolve_glossy(c, self, at, base, spec_trans);
     resolve_diffuse(c, self, at, base, reflected, transmitted);

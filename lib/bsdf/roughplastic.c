@@ -30,7 +30,7 @@ struct roughplastic {
     float alpha;
     int energy;
     // made by prepare
-    struct plastic_coat coat;     // its fresnel_in is of the rough coat where there is one
+    struct plastic_coat coat;     // its `leaving` is of the rough coat where there is one
     struct microfacet facets;
     bool smooth;
     float mean_transmitted;       // 2 * integral of T(c) c dc
@@ -98,14 +98,16 @@ static double reflected_inside(const struct roughplastic *self, float c) {
     return r;
 }
 
-// Mean over diffuse light of what the coat reflects inside.
+// What the coat lets out of diffuse light inside: what it does not reflect. The sum may leave nothing
+// by its error where nearly all is reflected; a smooth coat's share is there at least.
 static void integrate_inside(struct roughplastic *self) {
     double sum = 0;
     for (int i = 0; i < DIRECTIONS; i++) {
         const double c = fmax((double)i / (DIRECTIONS - 1), 1e-6);
         sum += c * reflected_inside(self, (float)c);
     }
-    self->coat.fresnel_in = (float)(2 * sum / DIRECTIONS);
+    const double least = fresnel_dielectric_transmitted(1 / (double)self->coat.eta);
+    self->coat.leaving = (float)fmax(1 - 2 * sum / DIRECTIONS, 0.5 * least);
 }
 
 // Mean over diffuse light of what the coat transmits from outside.
@@ -147,7 +149,7 @@ static void compensate(struct roughplastic *self, struct arena *arena) {
     for (int i = 0; i <= TABLE; i++)
         self->transmitted[i] += share * facet_lost(&loss, v3(0, 0, sqr((float)i / TABLE)));
     integrate_outside(self);
-    self->coat.fresnel_in = 1 - self->mean_transmitted / (eta * eta);
+    self->coat.leaving = self->mean_transmitted / (eta * eta);
 }
 
 static bool prepare(struct object *object, struct arena *arena) {
@@ -158,7 +160,7 @@ static bool prepare(struct object *object, struct arena *arena) {
                                    self->alpha);
     const float eta = self->index.int_ior / self->index.ext_ior;
     self->coat = (struct plastic_coat){.eta = eta, .nonlinear = self->nonlinear,
-                                       .fresnel_out = (float)fresnel_dielectric_average(eta)};
+                                       .entering = (float)fresnel_dielectric_transmitted(eta)};
     if (!self->smooth)
         tabulate_outside(self, compensated ? NODES_COMPENSATED : NODES_OUTSIDE);
     integrate_inside(self);
@@ -190,8 +192,7 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     c->wo = wo;
     c->quarter_area = 0.25f / microfacet_area(&self->facets, wo);
     c->specular = specular;
-    c->diffuse = plastic_base(diffuse, self->coat.fresnel_in, self->nonlinear, self->coat.eta) *
-                 lookup(self->transmitted, cos_o);
+    c->diffuse = plastic_base(diffuse, &self->coat) * lookup(self->transmitted, cos_o);
     const spectrum s = specular * lookup(self->reflected, cos_o);
     spectrum d = c->diffuse * self->mean_transmitted;
     c->compensated = self->energy == ENERGY_COMPENSATED;

@@ -50,13 +50,6 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     return &c->head;
 }
 
-static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
-    (void)closure;
-    (void)wi;
-    *pdf_sa = 0;
-    return spectrum_grey(0);
-}
-
 static bool sample(const struct closure *closure, float u1, struct vec2 u2,
                    struct bsdf_sample *s) {
     const struct thin_data *c = (const void *)closure;
@@ -84,6 +77,6 @@ const struct bsdf_type bsdf_thindielectric = {
     .entry = {.name = "thindielectric", .help = "thin pane of glass", .params = params,
               .size = sizeof(struct thindielectric)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY | CLAIM_LOSSLESS,
-    .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample, .albedo = albedo,
+    .lobes = lobes, .resolve = resolve, .eval = closure_eval_delta, .sample = sample, .albedo = albedo,
     .null_transmittance = null_transmittance,
 };

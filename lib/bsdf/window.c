@@ -6,6 +6,7 @@
 // Sampling: for every patch of the eye's hemisphere, the patches of the light's hemisphere by their
 // value times projected solid angle; a share is cosine-distributed.
 #include "bsdf/bsdf.h"
+#include "math/distribution.h"
 #include "math/warp.h"
 #include "table/window.h"
 
@@ -181,27 +182,12 @@ static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     return spectrum_grey(look(p, c->wo, w) * w[2]);
 }
 
-// The patch that holds u, and where in its interval u stands.
-static int find_cell(const float *cdf, int count, float u, float *remapped) {
-    int lo = 0, hi = count;
-    while (hi - lo > 1) {
-        const int middle = (lo + hi) / 2;
-        if (cdf[middle] <= u)
-            lo = middle;
-        else
-            hi = middle;
-    }
-    const float width = cdf[lo + 1] - cdf[lo];
-    *remapped = width > 0 ? clampf((u - cdf[lo]) / width, 0, 1 - 0x1p-24f) : 0.5f;
-    return lo;
-}
-
 static vec3 sample_light(const struct passage *p, int eye, float u1, struct vec2 u2) {
     if (u1 < COSINE_SHARE)
         return warp_cosine_hemisphere(u2);
     const float *cdf = p->cdf + (size_t)eye * ((size_t)p->light->count + 1);
     struct vec2 u = u2;
-    const int cell = find_cell(cdf, p->light->count, u2.x, &u.x);
+    const int cell = (int)cdf_find(cdf, (uint32_t)p->light->count, u2.x, &u.x);
     return window_cell_sample(p->light, cell, u);
 }
 

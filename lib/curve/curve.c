@@ -102,24 +102,19 @@ void curve_project(struct curve *c, uint32_t channel, curve_fn f, const void *ct
     mem_free(top);
 }
 
-struct channel {
-    const struct curve *curve;
-    uint32_t index;
-};
-
-static double channel_at(const void *ctx, double gamma) {
-    const struct channel *c = ctx;
+double curve_channel_at(const void *ctx, double gamma) {
+    const struct curve_channel *c = ctx;
     return curve_at(c->curve, c->index, gamma);
 }
 
 void curve_resample(struct curve *c, const struct curve *from, enum curve_filter filter) {
     for (uint32_t k = 0; k < c->channels; k++) {
-        const struct channel source = {from, k};
+        const struct curve_channel source = {from, k};
         if (basis_equal(&c->basis, &from->basis))
             memcpy(c->values + (size_t)k * c->basis.count, curve_values(from, k),
                    sizeof *c->values * c->basis.count);
         else
-            curve_project(c, k, channel_at, &source, filter, from->basis.knots,
+            curve_project(c, k, curve_channel_at, &source, filter, from->basis.knots,
                           basis_knots(&from->basis));
     }
 }

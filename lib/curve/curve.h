@@ -44,6 +44,14 @@ void curve_resample(struct curve *c, const struct curve *from, enum curve_filter
 // Value at gamma, 0 beyond the last knot.
 double curve_at(const struct curve *c, uint32_t channel, double gamma);
 
+// One channel of a curve, as a curve_fn.
+struct curve_channel {
+    const struct curve *curve;
+    uint32_t index;
+};
+
+double curve_channel_at(const void *channel, double gamma);
+
 static inline const double *curve_values(const struct curve *c, uint32_t channel) {
     return c->values + (size_t)(c->channels > 1 ? channel : 0) * c->basis.count;
 }

@@ -182,13 +182,10 @@ bool curve_read(struct curve *c, struct arena *arena, const char *path) {
 // ---- writing --------------------------------------------------------------------------------
 
 bool curve_write(const struct curve *c, const char *path) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) {
-        log_error("%s: no memory to write a curve", path);
+    struct file_text t;
+    if (!file_text_begin(&t, path))
         return false;
-    }
+    FILE *f = t.f;
     const struct basis *b = &c->basis;
     const bool boxes = b->kind == BASIS_BOX;
     fprintf(f, "%s,%s\n", boxes ? "from,to" : "at", c->channels > 1 ? "r,g,b" : "value");
@@ -200,7 +197,5 @@ bool curve_write(const struct curve *c, const char *path) {
             fprintf(f, ",%.17g", curve_values(c, k)[j]);
         fputc('\n', f);
     }
-    const bool ok = fclose(f) == 0 && file_write(path, text, size);
-    free(text);
-    return ok;
+    return file_text_end(&t);
 }

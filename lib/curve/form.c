@@ -6,11 +6,9 @@
 
 const char *const slot_names[] = {"f_o", "f_A", "f_B", NULL};
 
-static void term_eval(const struct form *f, const struct form_term *t, struct angles *a,
-                      double out[CURVE_CHANNELS]) {
+void form_term_eval(const struct form *f, const struct form_term *t, struct angles *a,
+                    double out[CURVE_CHANNELS]) {
     quotient_cos(&t->quotient, a, out);
-    for (int k = 0; k < CURVE_CHANNELS; k++)
-        out[k] *= t->scale[k];
     for (int s = 0; s < SLOTS; s++) {
         const struct form_slot *slot = &t->slots[s];
         if (slot->gamma.kind == GAMMA_NONE)
@@ -28,9 +26,9 @@ void form_eval(const struct form *f, const double wo[3], const double wi[3],
         out[k] = 0;
     for (uint32_t t = 0; t < f->terms && a.cos_i > 0 && a.cos_o > 0; t++) {
         double v[CURVE_CHANNELS];
-        term_eval(f, &f->term[t], &a, v);
+        form_term_eval(f, &f->term[t], &a, v);
         for (int k = 0; k < CURVE_CHANNELS; k++)
-            out[k] += v[k];
+            out[k] += f->term[t].scale[k] * v[k];
     }
 }
 

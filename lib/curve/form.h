@@ -46,6 +46,10 @@ struct form {
 void form_eval(const struct form *f, const double wo[3], const double wi[3],
                double out[CURVE_CHANNELS]);
 
+// rho cos_i / f_q of one term of the form.
+void form_term_eval(const struct form *f, const struct form_term *t, struct angles *a,
+                    double out[CURVE_CHANNELS]);
+
 // ---- building -------------------------------------------------------------------------------
 
 // A new term with f_q = colour * factor and no curves. There must be room.

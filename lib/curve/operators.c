@@ -172,16 +172,6 @@ double edited_curve_at(const void *edited, double gamma) {
     return fmax(f, 0);
 }
 
-struct channel {
-    const struct curve *curve;
-    uint32_t index;
-};
-
-static double channel_at(const void *ctx, double gamma) {
-    const struct channel *c = ctx;
-    return curve_at(c->curve, c->index, gamma);
-}
-
 // Whether basis function j meets the region of an operator.
 static bool is_touched(const struct basis *b, uint32_t j, const struct curve_operator *o,
                        uint32_t count) {
@@ -204,8 +194,8 @@ void curve_edit(struct curve *c, uint32_t channels, const struct curve_operator 
     for (uint32_t k = 0; k < c->channels; k++) {
         if (c->channels > 1 && !(channels >> k & 1))
             continue;
-        const struct channel from = {&source, k};
-        const struct edited_curve e = {channel_at, &from, operators, count};
+        const struct curve_channel from = {&source, k};
+        const struct edited_curve e = {curve_channel_at, &from, operators, count};
         curve_project(c, k, edited_curve_at, &e, filter, NULL, 0);
         for (uint32_t j = 0; j < n; j++)
             if (!is_touched(&c->basis, j, operators, count))

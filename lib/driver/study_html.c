@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a study: one file that needs no network and no script.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -151,19 +150,13 @@ static void write_pictures(const struct study *study, FILE *f) {
 }
 
 bool study_write_html(const struct study *study, const char *path) {
-    char *text = NULL;
-    size_t size;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) {
-        log_error("%s: no memory to write it", path);
+    struct file_text t;
+    if (!file_text_begin(&t, path))
         return false;
-    }
+    FILE *f = t.f;
     write_head(study, f);
     write_plots(study, f);
     write_table(study, f);
     write_pictures(study, f);
-    fclose(f);
-    const bool good = file_write(path, text, size);
-    free(text);
-    return good;
+    return file_text_end(&t);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plots of a study: relMSE over samples (or what else was varied), seconds and memory.
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -89,19 +88,13 @@ void study_plot(const struct study *study, enum study_axis axis, int width, int 
 }
 
 static bool write_plot(const struct study *study, enum study_axis axis) {
-    char *text = NULL, path[4096];
-    size_t size;
-    FILE *f = open_memstream(&text, &size);
+    struct file_text t;
+    char path[4096];
     snprintf(path, sizeof path, "%s/error-%s.svg", study->options->directory, axis_name(study, axis));
-    if (!f) {
-        log_error("%s: no memory to write it", path);
+    if (!file_text_begin(&t, path))
         return false;
-    }
-    study_plot(study, axis, WIDTH, HEIGHT, f);
-    fclose(f);
-    const bool good = file_write(path, text, size);
-    free(text);
-    return good;
+    study_plot(study, axis, WIDTH, HEIGHT, t.f);
+    return file_text_end(&t);
 }
 
 bool study_write_plots(const struct study *study) {

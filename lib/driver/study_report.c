@@ -3,7 +3,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -54,20 +53,14 @@ static void csv_point(const struct study *study, const struct study_point *p, FI
 }
 
 bool study_write_csv(const struct study *study, const char *path) {
-    char *text = NULL;
-    size_t size;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) {
-        log_error("%s: no memory to write it", path);
+    struct file_text t;
+    if (!file_text_begin(&t, path))
         return false;
-    }
+    FILE *f = t.f;
     csv_head(study, f);
     for (size_t i = 0; i < study->point_count; i++)
         csv_point(study, &study->points[i], f);
-    fclose(f);
-    const bool good = file_write(path, text, size);
-    free(text);
-    return good;
+    return file_text_end(&t);
 }
 
 // ---- JSON -------------------------------------------------------------------------------------

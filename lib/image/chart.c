@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -44,13 +43,10 @@ void chart_finish(struct chart *c) {
 // ---- SVG ------------------------------------------------------------------------------------
 
 static bool write_svg(const struct chart *c, const char *path) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) {
-        log_error("%s: no memory to write it", path);
+    struct file_text t;
+    if (!file_text_begin(&t, path))
         return false;
-    }
+    FILE *f = t.f;
     fprintf(f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\">\n"
                "<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n", c->width, c->height);
     for (size_t i = 0; i < c->line_count; i++) {
@@ -65,10 +61,7 @@ static bool write_svg(const struct chart *c, const char *path) {
         fprintf(f, "<text x=\"%.1f\" y=\"%.1f\" font-family=\"sans-serif\" font-size=\"12\">%s"
                    "</text>\n", (double)c->labels[i].x, (double)c->labels[i].y, c->labels[i].text);
     fprintf(f, "</svg>\n");
-    fclose(f);
-    const bool good = file_write(path, text, size);
-    free(text);
-    return good;
+    return file_text_end(&t);
 }
 
 // ---- PNG ------------------------------------------------------------------------------------

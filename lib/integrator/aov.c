@@ -72,7 +72,7 @@ static void trace_first_hits(struct trace_context *ctx, const struct path_start 
         if (!ctx->sink->wants_surface)
             continue;
         const vec3 wo = to_local(&s.point.frame, -rays[i].d);
-        vertex_add_first(ctx, i, &s, response_resolve(ctx->response, &s, wo, ctx->stack));
+        vertex_add_first(ctx, i, &s, response_resolve(ctx, i, 0, &s, wo));
     }
 }
 

@@ -305,7 +305,7 @@ static void shade(struct walker *w, const struct accel_hit *hit) {
     if (w->from.depth > 0 || !w->p->hide_emitters)
         vertex_add_emission(w->ctx, w->index, &s, w->ray.d, w->beta, &w->from);
     const vec3 wo = to_local(&s.point.frame, -w->ray.d);
-    const struct closure *closure = response_resolve(w->ctx->response, &s, wo, w->ctx->stack);
+    const struct closure *closure = response_resolve(w->ctx, w->index, w->from.depth, &s, wo);
     const bool goes_on = closure && may_scatter(w, w->from.depth);
     const struct medium *below = medium_below(w->ctx->world, &s, w->ray.d);
     const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);

@@ -121,7 +121,7 @@ static void trace_one(const struct direct *d, struct trace_context *ctx, int lan
         }
         beta /= 1 - pass;
         ctx->sink->type->covered(ctx->sink, lane);
-        const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
+        const struct closure *closure = response_resolve(ctx, lane, 0, &s, wo);
         if (ctx->sink->wants_surface)
             vertex_add_first(ctx, lane, &s, closure);
         const vec3 side = closure ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);

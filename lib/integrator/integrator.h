@@ -30,6 +30,13 @@ struct trace_context {
     uint64_t truncated; // paths that met the hard cap on events: the picture is too dark there
 };
 
+static inline const struct closure *response_resolve(const struct trace_context *ctx, int lane,
+                                                     uint32_t depth, const struct surface *s,
+                                                     vec3 wo) {
+    ctx->stack->used = 0;
+    return ctx->response->resolve(ctx->response, ctx, lane, depth, s, wo);
+}
+
 // A path of unlimited depth that neither leaves nor dies is cut here, and counted.
 enum { INTEGRATOR_MOST_EVENTS = 4096 };
 

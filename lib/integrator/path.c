@@ -114,7 +114,7 @@ static void shade(const struct path *p, struct trace_context *ctx, int i, struct
     if (l->from.depth > 0 || !p->hide_emitters)
         vertex_add_emission(ctx, i, &s, l->ray.d, l->beta, &l->from);
     const vec3 wo = to_local(&s.point.frame, -l->ray.d);
-    const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
+    const struct closure *closure = response_resolve(ctx, i, l->from.depth, &s, wo);
     const bool goes_on = closure && path_may_contribute(p, l->events + 1) &&
                          (!p->strict_normals || same_side(&s, -l->ray.d, wo));
     const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);

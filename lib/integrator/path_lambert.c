@@ -219,6 +219,7 @@ static void light(const struct path *p, struct trace_context *ctx, struct vertic
             continue;
         c->depth = v->depth[i] + 1;
         c->lobe = v->depth[i] ? v->lobe[i] : LOBE_DIFFUSE | LOBE_REFLECTION;
+        c->sampled = true;
         to->shadow.ray.tmin = 0;
         to->shadow.ray.tmax = tmax[i];
         to->shadow.most_passes = p->max_depth < 0 ? -1 : p->max_depth - 2 - (int)v->events[i];

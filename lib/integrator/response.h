@@ -7,17 +7,13 @@
 
 #include "world/world.h"
 
+struct trace_context;
+
 struct response {
-    // The material at a surface seen from wo (local); NULL: black.
-    const struct closure *(*resolve)(const struct response *self, const struct surface *s, vec3 wo,
-                                     struct closure_stack *stack);
+    // The material at a surface seen from wo (local), on ctx->stack; NULL: black. `depth` counts the
+    // scattering events of the lane's path before this one.
+    const struct closure *(*resolve)(const struct response *self, const struct trace_context *ctx,
+                                     int lane, uint32_t depth, const struct surface *s, vec3 wo);
 };
 
 extern const struct response response_physical;
-
-static inline const struct closure *response_resolve(const struct response *r,
-                                                     const struct surface *s, vec3 wo,
-                                                     struct closure_stack *stack) {
-    stack->used = 0;
-    return r->resolve(r, s, wo, stack);
-}

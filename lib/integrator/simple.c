@@ -30,7 +30,7 @@ static void add_delta_lights(struct trace_context *ctx, int lane, const struct s
         const spectrum through = world_transmittance(ctx->world, world_shadow_ray(s, &l), most_passes, rgb);
         sink_add(ctx->sink, lane,
                  &(struct contribution){beta * f * through / l.pdf_sa, l.emission, i, from->depth + 1,
-                                        from->depth ? from->lobe : closure->lobes, l.wi});
+                                        from->depth ? from->lobe : closure->lobes, true, l.wi});
     }
 }
 
@@ -57,7 +57,7 @@ static void trace_one(const struct simple *p, struct trace_context *ctx, int lan
         world_surface(ctx->world, &ray, &hit, &s);
         vertex_add_emission(ctx, lane, &s, ray.d, beta, &from);
         const vec3 wo = to_local(&s.point.frame, -ray.d);
-        const struct closure *closure = response_resolve(ctx->response, &s, wo, ctx->stack);
+        const struct closure *closure = response_resolve(ctx, lane, from.depth, &s, wo);
         if (!closure)
             return;
         if (p->max_depth < 0 || events + 1 < p->max_depth)

@@ -17,7 +17,8 @@ void vertex_add_emission(struct trace_context *ctx, int lane, const struct surfa
     if (!from->delta)
         mis = mis_weight(from->pdf_sa, world_light_pdf_sa(ctx->world, index, &place, &hit));
     sink_add(ctx->sink, lane,
-             &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, d});
+             &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, false,
+                                    d});
 }
 
 void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum beta,
@@ -32,7 +33,8 @@ void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum b
         if (!from->delta)
             mis = mis_weight(from->pdf_sa, world_light_pdf_sa(ctx->world, index, &place, &hit));
         sink_add(ctx->sink, lane,
-                 &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, d});
+                 &(struct contribution){mis * beta, emission, index, from->depth, from->lobe, false,
+                                        d});
     }
 }
 
@@ -52,7 +54,7 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
         return;
     const float share = l.delta ? 1 : mis_weight(l.pdf_sa, rivals * pdf_bsdf);
     test->contribution = (struct contribution){.weight = f * (share / l.pdf_sa), .emission = l.emission,
-                                               .source = index, .wi = l.wi};
+                                               .source = index, .sampled = true, .wi = l.wi};
     test->ray = world_shadow_ray(s, &l);
     test->late = l.late;
     test->pending = true;

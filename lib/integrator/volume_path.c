@@ -112,7 +112,7 @@ static void add_light(struct walker *w, const struct light_sample *l, uint32_t l
     const float share = l->delta ? 1 : mis_weight(l->pdf_sa, pdf_vertex);
     sink_add(w->ctx->sink, w->index,
              &(struct contribution){throughput(w) * f * through * (share / l->pdf_sa), emission,
-                                    light, w->from.depth + 1, w->from.depth ? w->from.lobe : lobe,
+                                    light, w->from.depth + 1, w->from.depth ? w->from.lobe : lobe, true,
                                     l->wi});
 }
 
@@ -184,7 +184,7 @@ static void add_glow(struct walker *w) {
     sink_add(w->ctx->sink, w->index,
              &(struct contribution){w->flight.emitted, spectrum_grey(1),
                                     w->ctx->world->light_count + w->medium, w->from.depth,
-                                    w->from.lobe, w->ray.d});
+                                    w->from.lobe, false, w->ray.d});
 }
 
 // A point that rounding can put onto the other side of a surface at that distance counts as having
@@ -265,7 +265,7 @@ static void shade(struct walker *w, const struct accel_hit *hit) {
     if (w->from.depth > 0 || !w->p->hide_emitters)
         vertex_add_emission(w->ctx, w->index, &s, w->ray.d, throughput(w), &w->from);
     const vec3 wo = to_local(&s.point.frame, -w->ray.d);
-    const struct closure *closure = response_resolve(w->ctx->response, &s, wo, w->ctx->stack);
+    const struct closure *closure = response_resolve(w->ctx, w->index, w->from.depth, &s, wo);
     const bool goes_on = closure && may_scatter(w, w->from.depth) &&
                          (!w->p->strict_normals || same_side(&s, -w->ray.d, wo));
     const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);

@@ -31,20 +31,27 @@ void distribution_finish(struct distribution *d) {
     *d = (struct distribution){0};
 }
 
-uint32_t distribution_sample(const struct distribution *d, float u, float *pmf, float *remapped) {
-    uint32_t lo = 0, hi = d->count; // invariant: cdf[lo] <= u < cdf[hi]
+uint32_t cdf_find(const float *cdf, uint32_t count, float u, float *remapped) {
+    uint32_t lo = 0, hi = count; // invariant: cdf[lo] <= u < cdf[hi]
     while (hi - lo > 1) {
         const uint32_t middle = lo + (hi - lo) / 2;
-        if (d->cdf[middle] <= u)
+        if (cdf[middle] <= u)
             lo = middle;
         else
             hi = middle;
     }
-    const float width = d->cdf[lo + 1] - d->cdf[lo];
-    *pmf = width;
-    if (remapped)
-        *remapped = width > 0 ? minf((u - d->cdf[lo]) / width, ONE_MINUS) : 0;
+    const float width = cdf[lo + 1] - cdf[lo];
+    *remapped = width > 0 ? minf((u - cdf[lo]) / width, ONE_MINUS) : 0;
     return lo;
+}
+
+uint32_t distribution_sample(const struct distribution *d, float u, float *pmf, float *remapped) {
+    float within;
+    const uint32_t i = cdf_find(d->cdf, d->count, u, &within);
+    *pmf = distribution_pmf(d, i);
+    if (remapped)
+        *remapped = within;
+    return i;
 }
 
 // Vose's construction; two stacks in one array, small entries from the left, large from the right.

@@ -7,6 +7,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// The interval of `count` ascending sums from 0 to 1 that holds u in [0,1), and where in it u
+// stands, in [0,1).
+uint32_t cdf_find(const float *cdf, uint32_t count, float u, float *remapped);
+
 struct distribution {
     uint32_t count;
     float *cdf;   // count + 1 values from 0 to 1, owned

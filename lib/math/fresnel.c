@@ -13,9 +13,8 @@ static double dielectric(double c, double eta) {
 double fresnel_dielectric_average(double eta) {
     if (eta == 1)
         return 0;
-    // Both sides of an interface exchange the same power: (1 - F(1/n)) n^2 = 1 - F(n).
     if (eta < 1)
-        return 1 - eta * eta * (1 - fresnel_dielectric_average(1 / eta));
+        return 1 - fresnel_dielectric_transmitted(eta);
     // F falls off within sqrt(eta^2 - 1) of grazing: c = t^3 puts nodes there.
     enum { N = 96 };
     double t[N], w[N], sum = 0;
@@ -25,4 +24,11 @@ double fresnel_dielectric_average(double eta) {
         sum += w[i] * 3 * t[i] * t[i] * 2 * c * dielectric(c, eta);
     }
     return sum;
+}
+
+// Both sides of an interface exchange the same power: (1 - F(1/n)) n^2 = 1 - F(n).
+double fresnel_dielectric_transmitted(double eta) {
+    if (eta < 1)
+        return eta * eta * fresnel_dielectric_transmitted(1 / eta);
+    return 1 - fresnel_dielectric_average(eta);
 }

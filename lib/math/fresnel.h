@@ -56,5 +56,7 @@ static inline spectrum fresnel_conductor(float cos_i, spectrum eta, spectrum k) 
     return f;
 }
 
-// 2 * integral of F(c) c dc over [0, 1]: what a dielectric reflects of diffuse light. To 1e-7.
+// 2 * integral of F(c) c dc over [0, 1]: what a dielectric reflects of diffuse light, to 1e-7; and
+// what it transmits, without the cancellation of 1 - reflected where that is little (small eta).
 double fresnel_dielectric_average(double eta);
+double fresnel_dielectric_transmitted(double eta);

@@ -6,6 +6,10 @@
 
 #include "math/vec.h"
 
+// Real indices that materials take, on either side of a boundary.
+#define IOR_LEAST 1e-3f
+#define IOR_MOST 1e3f
+
 // Complex index eta + i k of a conductor ("Au", "Cu", "Al", ...; upper and lower case differ) as
 // linear Rec.709 triples. "none" is the perfect mirror: eta 0, k 1, of which the Fresnel
 // reflectance is 1. false: no such material.

@@ -25,6 +25,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "math/ior.h"
 #include "scene/gltf.h"
 
 // A material while it is made.
@@ -352,7 +353,7 @@ static void read_factors(struct making *m) {
     m->eta = gltf_number(gltf_extension(material, "KHR_materials_ior"), "ior", 1.5);
     if (m->eta == 0) // a reflectance of 1 for old workflows
         m->eta = index_of(0.98);
-    m->eta = fmin(m->eta, 100);
+    m->eta = fmin(m->eta, (double)IOR_MOST);
     apply_specular(m);
 }
 

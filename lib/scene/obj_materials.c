@@ -22,6 +22,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "math/ior.h"
 
 enum field_kind { NUMBER, COLOUR, FILENAME };
 
@@ -187,7 +188,7 @@ static bool add_map(struct reader *r, struct xml_node *parent, const char *name,
 static void add_glass(struct reader *r, struct xml_node *parent, const struct mtl *m) {
     struct xml_node *node = tree_add(r, parent, "bsdf", "dielectric", NULL);
     const double Tf[3] = {share(m->Tf[0]), share(m->Tf[1]), share(m->Tf[2])};
-    tree_number(r, node, "int_ior", fmin(fmax(m->Ni, 1), 100));
+    tree_number(r, node, "int_ior", fmin(fmax(m->Ni, 1), (double)IOR_MOST));
     tree_triple(r, node, "rgb", "specular_transmittance", Tf);
 }
 

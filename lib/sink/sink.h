@@ -15,6 +15,7 @@
 
 #include "bsdf/bsdf.h"
 #include "math/vec.h"
+#include "sink/chain.h"
 
 enum { SINK_LANES = 16, SINK_MOST_LANES = 256, SINK_TILE = 32 };
 
@@ -24,6 +25,7 @@ struct contribution {
     uint32_t source;   // index of the light; from the number of lights on: of the medium that glows
     uint32_t depth;    // scattering events between sensor and source; 0: seen directly
     uint32_t lobe;     // enum lobe of the first scattering event; 0 at depth 0
+    bool sampled;      // the light was, and not found by the path as it went on
     vec3 wi;           // direction from the last vertex towards the source
 };
 
@@ -61,6 +63,7 @@ struct sink_type {
 struct sink {
     const struct sink_type *type;
     bool wants_surface; // whether anybody looks at `surface`; it is not called otherwise
+    struct chain *chains; // of the lanes, for a response to editable materials; NULL: none is asked
 };
 
 static inline void sink_add(struct sink *s, int lane, const struct contribution *c) {

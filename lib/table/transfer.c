@@ -19,7 +19,6 @@
 // '-' stands for a value that is missing, and so does a negative one. At 90 degrees p says nothing:
 // those rows are made from the rows above them.
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -243,13 +242,10 @@ static void write_side(FILE *f, const char *name, const struct goniometer_table 
 }
 
 bool transfer_write(const char *path, const struct goniometer_table *t) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *f = open_memstream(&text, &size);
-    if (!f) {
-        log_error("%s: no memory to write it", path);
+    struct file_text out;
+    if (!file_text_begin(&out, path))
         return false;
-    }
+    FILE *f = out.f;
     fprintf(f, "transfer 1\nchannels 3\nquantity p\nsymmetry %d\n", t->symmetry);
     write_list(f, "incident_theta", t->theta, t->theta_count);
     if (t->phi_count > 1)
@@ -258,8 +254,5 @@ bool transfer_write(const char *path, const struct goniometer_table *t) {
     write_side(f, "reflection", t, 0);
     if (t->f[1])
         write_side(f, "transmission", t, 1);
-    fclose(f);
-    const bool good = file_write(path, text, size);
-    free(text);
-    return good;
+    return file_text_end(&out);
 }
