@@ -160,7 +160,7 @@ static bool relight(const struct values *v, const char *command, const struct te
     m.first = time_seconds() - start;
     done = done && (!v->time || measure(r, t, weights, frame, &m));
     if (done) {
-        replay_variance(r, &weights, variance);
+        replay_variance(r, &weights, NULL, variance);
         done = write_picture(v, command, t, frame, v->variance ? variance : NULL);
     }
     if (done)

@@ -4,10 +4,7 @@
 //     dot:       out[tile][channel][lane]  = sum_c weight[c][channel] T[tile][c][channel][lane]
 //     add_terms: out[tile][channel][lane] += sum_k weight[k][channel] T[tile][term[k]][channel][lane]
 //
-// One work-item a tile; the tiles of t begin with number `first` of out. A matrix is contracted over its last axis by dot, a row being a tile; over
-// its first axis by contract_first, one work-item a tile and column:
-//
-//     out[tile][b][channel][lane] = sum_a weight[a][channel] T[tile][a][b][channel][lane]
+// One work-item a tile; the tiles of t begin with number `first` of out.
 #if !defined(__OPENCL_C_VERSION__)
 #error "OpenCL C is expected"
 #endif
@@ -57,21 +54,6 @@
                     out[channel * TILE_VECTORS + v] +=                                             \
                         weight[channel] * LOAD(row, channel * TILE_VECTORS + v);                   \
         }                                                                                          \
-    }                                                                                              \
-                                                                                                   \
-    kernel void contract_first_##suffix(global const type *t, global const float *weight,          \
-                                        uint rows, uint columns, global float16 *out) {            \
-        const size_t tile = get_global_id(0) / columns, column = get_global_id(0) % columns;       \
-        float16 sum[TILE_ROW];                                                                     \
-        for (uint i = 0; i < TILE_ROW; i++)                                                        \
-            sum[i] = 0;                                                                            \
-        t += (tile * rows * columns + column) * TILE_ROW;                                          \
-        for (uint a = 0; a < rows; a++, weight += TILE_CHANNELS, t += columns * TILE_ROW)          \
-            for (uint i = 0; i < TILE_ROW; i++)                                                    \
-                sum[i] += weight[i / TILE_VECTORS] * LOAD(t, i);                                   \
-        out += (tile * columns + column) * TILE_ROW;                                               \
-        for (uint i = 0; i < TILE_ROW; i++)                                                        \
-            out[i] = sum[i];                                                                       \
     }
 
 DEFINE(f32, float16, LOAD_F32)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "replay/replay.h"
+#include "replay/replay_data.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -7,48 +7,45 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/thread.h"
-#include "cl/compute.h"
-#include "kernels/tile.h"
 #include "replay/tiles.h"
 
-enum { ROW = TILE_CHANNELS * TILE_LANES };
-
-// Consecutive tiles of a block that one buffer of the device holds.
-struct chunk {
-    size_t first, tiles;
-    struct compute_buffer values;
-};
-
-struct replay_block {
-    const struct tensor_block *tensor;
-    float *sums; // [tile][channel][lane]
-    struct chunk *chunks;
-    size_t chunk_count;
-    bool dirty; // sums are on the device, not here
-    struct compute_buffer out, weights, terms;
-};
-
-struct replay {
-    const struct tensor *tensor;
-    struct compute_device *device; // NULL: twins
-    int threads;
-    char name[300];
-    struct replay_block *blocks;
-};
-
 static size_t tile_bytes(const struct tensor_block *b) {
-    return (size_t)b->coefficients * ROW * tensor_value_size(b->storage);
+    return (size_t)b->coefficients * REPLAY_ROW * tensor_value_size(b->storage);
 }
 
-static const char *suffix(const struct tensor_block *b) {
-    return b->storage == TENSOR_BF16 ? "bf16" : "f32";
+// ---- chunks -------------------------------------------------------------------------------------
+
+bool replay_open_chunk(struct replay *r, const struct replay_block *b, struct replay_chunk *c) {
+    const size_t bytes = tile_bytes(b->tensor);
+    if (!c->values.handle)
+        c->values = compute_buffer_wrap(
+            r->device, (const char *)b->tensor->values + c->first * bytes, c->tiles * bytes);
+    return c->values.handle != NULL;
+}
+
+void replay_close_chunk(struct replay_chunk *c) {
+    if (!c->resident)
+        compute_buffer_destroy(&c->values);
+}
+
+struct compute_kernel *replay_kernel(struct replay *r, const struct replay_block *b,
+                                     const char *file, const char *name) {
+    char full[32];
+    snprintf(full, sizeof full, "%s_%s", name, b->tensor->storage == TENSOR_BF16 ? "bf16" : "f32");
+    return compute_kernel(r->device, file, full);
 }
 
 // ---- set up -------------------------------------------------------------------------------------
 
-static bool wrap_values(struct replay *r, struct replay_block *b) {
+// Chunks stay on the device as long as there is room; the others go through an eighth of it.
+static bool make_chunks(struct replay *r, struct replay_block *b) {
     const size_t tiles = tensor_tiles(b->tensor), bytes = tile_bytes(b->tensor);
-    size_t most = compute_most_allocation(r->device) / bytes;
+    size_t limit = compute_most_allocation(r->device);
+    if (r->room < tiles * bytes && r->room / 8 < limit)
+        limit = r->room / 8;
+    size_t most = limit / bytes;
+    if (most == 0 && bytes <= compute_most_allocation(r->device))
+        most = 1;
     if (most == 0) {
         log_error("%s cannot hold a tile of %zu bytes; go on without it (--no-device)",
                   compute_name(r->device), bytes);
@@ -57,26 +54,33 @@ static bool wrap_values(struct replay *r, struct replay_block *b) {
     b->chunk_count = (tiles + most - 1) / most;
     b->chunks = mem_array(b->chunk_count, sizeof *b->chunks);
     for (size_t i = 0; i < b->chunk_count; i++) {
-        struct chunk *c = &b->chunks[i];
+        struct replay_chunk *c = &b->chunks[i];
         c->first = i * most;
         c->tiles = tiles - c->first < most ? tiles - c->first : most;
-        c->values = compute_buffer_wrap(
-            r->device, (const char *)b->tensor->values + c->first * bytes, c->tiles * bytes);
-        if (!c->values.handle)
+        c->resident = c->tiles * bytes <= r->room - r->room / 4;
+        if (c->resident && !replay_open_chunk(r, b, c))
             return false;
+        r->room -= c->resident ? c->tiles * bytes : 0;
     }
     return true;
 }
 
 static bool prepare_block(struct replay *r, struct replay_block *b) {
     const size_t tiles = tensor_tiles(b->tensor), weights = (size_t)b->tensor->coefficients * 3 * 4;
-    b->sums = mem_array(tiles * ROW, sizeof *b->sums);
+    b->sums = mem_array(tiles * REPLAY_ROW, sizeof *b->sums);
     if (!r->device || tiles == 0)
         return true;
-    b->out = compute_buffer_create(r->device, tiles * ROW * sizeof *b->sums);
+    b->out = compute_buffer_create(r->device, tiles * REPLAY_ROW * sizeof *b->sums);
     b->weights = compute_buffer_create(r->device, weights);
     b->terms = compute_buffer_create(r->device, (size_t)b->tensor->coefficients * 4);
-    return b->out.handle && b->weights.handle && b->terms.handle && wrap_values(r, b);
+    return b->out.handle && b->weights.handle && b->terms.handle && make_chunks(r, b);
+}
+
+// A device that shares the host's memory works on the file where it is mapped.
+static size_t room_of(const struct replay *r, const struct replay_options *options) {
+    if (options->most_memory)
+        return options->most_memory;
+    return !r->device || compute_is_cpu(r->device) ? SIZE_MAX : compute_memory(r->device);
 }
 
 struct replay *replay_create(const struct tensor *t, const struct replay_options *options) {
@@ -89,6 +93,7 @@ struct replay *replay_create(const struct tensor *t, const struct replay_options
     else
         snprintf(r->name, sizeof r->name, "C, %d threads",
                  r->threads > 0 ? r->threads : thread_default_count());
+    r->room = room_of(r, options);
     r->blocks = mem_array(t->block_count, sizeof *r->blocks);
     for (uint32_t i = 0; i < t->block_count; i++) {
         r->blocks[i].tensor = &t->blocks[i];
@@ -127,20 +132,21 @@ const char *replay_device(const struct replay *r) {
 // Runs a kernel over all chunks of a block; its arguments 0, out_at and out_at + 1 are set here.
 static bool run_chunks(struct replay *r, struct replay_block *b, const char *kernel,
                        const struct compute_arg *args, uint32_t count, uint32_t out_at) {
-    char name[32];
     struct compute_arg a[8];
-    snprintf(name, sizeof name, "%s_%s", kernel, suffix(b->tensor));
-    struct compute_kernel *k = compute_kernel(r->device, "dot", name);
+    struct compute_kernel *k = replay_kernel(r, b, "dot", kernel);
     if (!k)
         return false;
     memcpy(a, args, count * sizeof *a);
     for (size_t i = 0; i < b->chunk_count; i++) {
-        const struct chunk *c = &b->chunks[i];
+        struct replay_chunk *c = &b->chunks[i];
+        if (!replay_open_chunk(r, b, c))
+            return false;
         a[0] = COMPUTE_BUFFER(&c->values);
         a[out_at] = COMPUTE_BUFFER(&b->out);
         a[out_at + 1] = COMPUTE_UINT((uint32_t)c->first);
         if (!compute_run(r->device, k, c->tiles, a, count))
             return false;
+        replay_close_chunk(c);
     }
     b->dirty = true;
     return true;
@@ -191,46 +197,54 @@ static bool fetch(struct replay *r, struct replay_block *b) {
         return true;
     b->dirty = false;
     return compute_read(r->device, &b->out, 0, b->sums,
-                        tensor_tiles(b->tensor) * ROW * sizeof *b->sums);
+                        tensor_tiles(b->tensor) * REPLAY_ROW * sizeof *b->sums);
 }
 
-bool replay_frame(struct replay *r, const float *scale, float *frame) {
-    const struct tensor *t = r->tensor;
-    const uint32_t plane = t->width * t->height;
+// Adds a block's sums to a picture.
+static void compose(const struct replay *r, uint32_t block, const float *sums,
+                    const struct replay_factors *f, float *frame) {
     const float one[3] = {1, 1, 1};
+    const struct tensor_block *b = &r->tensor->blocks[block];
+    tiles_compose(sums, b->pixels, (uint32_t)b->pixel_count,
+                  f && f->scale ? f->scale + 3 * (size_t)block : one,
+                  f && f->pixel ? f->pixel[block] : NULL, frame,
+                  r->tensor->width * r->tensor->height, r->threads);
+}
+
+bool replay_frame(struct replay *r, const struct replay_factors *factors, float *frame) {
+    const struct tensor *t = r->tensor;
+    const size_t plane = (size_t)t->width * t->height;
     if (t->fixed)
-        memcpy(frame, t->fixed, 3 * (size_t)plane * sizeof *frame);
+        memcpy(frame, t->fixed, 3 * plane * sizeof *frame);
     else
-        memset(frame, 0, 3 * (size_t)plane * sizeof *frame);
+        memset(frame, 0, 3 * plane * sizeof *frame);
     for (uint32_t i = 0; i < t->block_count; i++) {
-        struct replay_block *b = &r->blocks[i];
-        if (!fetch(r, b))
+        if (!fetch(r, &r->blocks[i]))
             return false;
-        tiles_compose(b->sums, b->tensor->pixels, (uint32_t)b->tensor->pixel_count,
-                      scale ? scale + 3 * (size_t)i : one, NULL, frame, plane, r->threads);
+        compose(r, i, r->blocks[i].sums, factors, frame);
     }
     return true;
 }
 
-void replay_variance(struct replay *r, const float *const *weights, float *variance) {
+void replay_variance(struct replay *r, const float *const *weights,
+                     const struct replay_factors *factors, float *variance) {
     const struct tensor *t = r->tensor;
-    const uint32_t plane = t->width * t->height;
-    const float one[3] = {1, 1, 1};
-    float *sum = mem_array(3 * (size_t)plane, sizeof *sum);
+    const size_t plane = (size_t)t->width * t->height;
+    float *sum = mem_array(3 * plane, sizeof *sum);
     for (uint32_t i = 0; i < t->block_count; i++) {
         const struct tensor_block *b = &t->blocks[i];
         if (!b->halves)
             continue;
-        float *out = mem_array(tensor_tiles(b) * ROW, sizeof *out);
+        float *out = mem_array(tensor_tiles(b) * REPLAY_ROW, sizeof *out);
         tiles_dot(b->halves, b->storage, weights[i], b->coefficients, tensor_tiles(b), out,
                   r->threads);
-        tiles_compose(out, b->pixels, (uint32_t)b->pixel_count, one, NULL, sum, plane, r->threads);
+        compose(r, i, out, factors, sum);
         mem_free(out);
     }
-    for (uint32_t i = 0; i < plane; i++) {
+    for (size_t i = 0; i < plane; i++) {
         variance[i] = 0;
-        for (uint32_t c = 0; c < 3; c++) {
-            const float d = sum[(size_t)c * plane + i];
+        for (size_t c = 0; c < 3; c++) {
+            const float d = sum[c * plane + i];
             variance[i] += d * d / 3;
         }
     }

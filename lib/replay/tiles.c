@@ -14,7 +14,8 @@ struct run {
     enum tensor_storage storage;
     const float *weight;
     const uint32_t *term;
-    uint32_t terms, coefficients, columns;
+    uint32_t terms, coefficients;
+    const struct contraction *contraction;
     float *out, *scratch;
 };
 
@@ -66,22 +67,23 @@ void tiles_add_terms(const void *t, enum tensor_storage storage, const float *we
     thread_for(threads, tiles, add_terms_tile, &r);
 }
 
-static void contract_tile(void *ctx, size_t item, int worker) {
+static void contract_tile(void *ctx, size_t tile, int worker) {
     const struct run *r = ctx;
-    const size_t tile = item / r->columns, column = item % r->columns;
-    float sum[ROW] = {0};
+    const struct contraction *c = r->contraction;
+    float *out = r->out + tile * c->reduced * ROW;
     (void)worker;
-    for (uint32_t a = 0; a < r->coefficients; a++)
-        add_row(r, (tile * r->coefficients + a) * r->columns + column,
-                r->weight + (size_t)a * TILE_CHANNELS, sum);
-    memcpy(r->out + item * ROW, sum, sizeof sum);
+    memset(out, 0, (size_t)c->reduced * ROW * sizeof *out);
+    for (uint32_t k = 0; k < c->reduced; k++)
+        for (size_t i = c->start[k]; i < c->start[k + 1]; i++)
+            add_row(r, tile * r->coefficients + c->index[i], c->weight + i * TILE_CHANNELS,
+                    out + (size_t)k * ROW);
 }
 
-void tiles_contract_first(const void *t, enum tensor_storage storage, const float *weight,
-                          uint32_t rows, uint32_t columns, size_t tiles, float *out, int threads) {
-    struct run r = {.t = t, .storage = storage, .weight = weight, .coefficients = rows,
-                    .columns = columns, .out = out};
-    thread_for(threads, tiles * columns, contract_tile, &r);
+void tiles_contract(const void *t, enum tensor_storage storage, const struct contraction *c,
+                    uint32_t coefficients, size_t tiles, float *out, int threads) {
+    struct run r = {.t = t, .storage = storage, .contraction = c, .coefficients = coefficients,
+                    .out = out};
+    thread_for(threads, tiles, contract_tile, &r);
 }
 
 // ---- wavelets -----------------------------------------------------------------------------------

@@ -15,9 +15,19 @@ void tiles_dot(const void *t, enum tensor_storage storage, const float *weight,
 void tiles_add_terms(const void *t, enum tensor_storage storage, const float *weight,
                      const uint32_t *term, uint32_t terms, uint32_t coefficients, size_t tiles,
                      float *out, int threads);
-// out[tile][b][channel][lane] = sum_a weight[a][channel] T[tile][a][b][channel][lane]
-void tiles_contract_first(const void *t, enum tensor_storage storage, const float *weight,
-                          uint32_t rows, uint32_t columns, size_t tiles, float *out, int threads);
+
+// A linear map of coefficients to fewer ones: number r is the sum of weight[i] times coefficient
+// index[i] over start[r] <= i < start[r + 1].
+struct contraction {
+    uint32_t reduced;
+    const uint32_t *start; // reduced + 1
+    const uint32_t *index;
+    const float *weight; // [i][channel]
+};
+
+// out[tile][r][channel][lane] = sum_i weight[i][channel] T[tile][index[i]][channel][lane]
+void tiles_contract(const void *t, enum tensor_storage storage, const struct contraction *c,
+                    uint32_t coefficients, size_t tiles, float *out, int threads);
 // Periodic Daubechies-4 transform over the coefficients of each lane, in place; coefficients a power
 // of two; scratch as large as t.
 void tiles_daubechies4(float *t, float *scratch, uint32_t coefficients, uint32_t steps,

@@ -166,30 +166,50 @@ static void add_terms(struct fixture *f, enum tensor_storage s) {
     mem_free(start), mem_free(twin), mem_free(truth), mem_free(size);
 }
 
-static void contract_first(struct fixture *f, enum tensor_storage s) {
-    const size_t n = (size_t)TILES * COLUMNS * ROW;
+// Lists of different lengths, none and long ones among them, with coefficients in any order.
+static void contract(struct fixture *f, enum tensor_storage s) {
+    enum { REDUCED = 21, MOST = 40, ALL = REDUCED * MOST };
+    const uint32_t coefficients = COEFFICIENTS * COLUMNS;
+    const size_t n = (size_t)TILES * REDUCED * ROW;
     float *twin = mem_array(n, sizeof *twin), *zero = mem_array(n, sizeof *zero);
     double *truth = mem_array(n, sizeof *truth), *size = mem_array(n, sizeof *size);
-    tiles_contract_first(f->stored[s], s, f->weight, COEFFICIENTS, COLUMNS, TILES, twin, 2);
+    float *weight = random_floats(ALL * TILE_CHANNELS);
+    uint32_t start[REDUCED + 1] = {0}, index[ALL];
+    for (uint32_t r = 0; r < REDUCED; r++)
+        start[r + 1] = start[r] + (uint32_t)rand() % MOST * (r % 5 != 3);
+    for (uint32_t i = 0; i < start[REDUCED]; i++)
+        index[i] = (uint32_t)rand() % coefficients;
+    const struct contraction c = {REDUCED, start, index, weight};
+    tiles_contract(f->stored[s], s, &c, coefficients, TILES, twin, 2);
     for (size_t tile = 0; tile < TILES; tile++)
-        for (uint32_t a = 0; a < COEFFICIENTS; a++)
-            for (uint32_t b = 0; b < COLUMNS; b++)
-                add_truth(f->t[s], (tile * COEFFICIENTS + a) * COLUMNS + b, f->weight + 3 * a,
-                          truth + (tile * COLUMNS + b) * ROW, size + (tile * COLUMNS + b) * ROW);
-    CHECK(sum_error(twin, truth, size, n, COEFFICIENTS) <= 1);
+        for (size_t r = 0; r < REDUCED; r++)
+            for (size_t i = start[r]; i < start[r + 1]; i++)
+                add_truth(f->t[s], tile * coefficients + index[i], weight + 3 * i,
+                          truth + (tile * REDUCED + r) * ROW, size + (tile * REDUCED + r) * ROW);
+    for (size_t i = 0; i < n; i++)
+        size[i] += size[i] > 0 ? 0 : 1e-30; // an empty list gives exactly 0
+    CHECK(sum_error(twin, truth, size, n, MOST) <= 1);
     if (f->device) {
         char name[32];
+        const uint32_t first = 2; // tiles that are left out
         struct compute_buffer t = to_device(f, f->stored[s], f->values * tensor_value_size(s));
-        struct compute_buffer w = to_device(f, f->weight, COEFFICIENTS * 3 * sizeof(float));
-        struct compute_arg args[] = {COMPUTE_BUFFER(&t), COMPUTE_BUFFER(&w),
-                                     COMPUTE_UINT(COEFFICIENTS), COMPUTE_UINT(COLUMNS),
+        struct compute_buffer w = to_device(f, weight, ALL * TILE_CHANNELS * sizeof *weight);
+        struct compute_buffer i = to_device(f, index, sizeof index);
+        struct compute_buffer b = to_device(f, start, sizeof start);
+        struct compute_arg args[] = {COMPUTE_BUFFER(&t), COMPUTE_BUFFER(&w), COMPUTE_BUFFER(&i),
+                                     COMPUTE_BUFFER(&b), COMPUTE_UINT(coefficients),
+                                     COMPUTE_UINT(REDUCED), COMPUTE_UINT(first),
                                      COMPUTE_BUFFER(NULL)};
-        snprintf(name, sizeof name, "contract_first_%s", suffix[s]);
-        kernel_agrees(f, "dot", name, args, 5, TILES * COLUMNS, zero, twin, n);
+        snprintf(name, sizeof name, "contract_%s", suffix[s]);
+        kernel_agrees(f, "contract", name, args, 8,
+                      (TILES - first) * ((REDUCED + TILE_REDUCED - 1) / TILE_REDUCED), zero,
+                      twin + first * REDUCED * ROW, (TILES - first) * (size_t)REDUCED * ROW);
         compute_buffer_destroy(&t);
         compute_buffer_destroy(&w);
+        compute_buffer_destroy(&i);
+        compute_buffer_destroy(&b);
     }
-    mem_free(twin), mem_free(zero), mem_free(truth), mem_free(size);
+    mem_free(twin), mem_free(zero), mem_free(truth), mem_free(size), mem_free(weight);
 }
 
 // Orthonormal: the transform keeps the sum of squares of each lane.
@@ -295,7 +315,7 @@ int main(void) {
     for (int s = TENSOR_F32; s <= TENSOR_BF16; s++) {
         dot(&f, (enum tensor_storage)s);
         add_terms(&f, (enum tensor_storage)s);
-        contract_first(&f, (enum tensor_storage)s);
+        contract(&f, (enum tensor_storage)s);
     }
     daubechies4(&f);
     compose(&f, false);

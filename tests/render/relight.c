@@ -54,7 +54,7 @@ static void replayed(const struct tensor_file *f, const float *weights, float *f
     struct replay *r = replay_create(t, &(struct replay_options){.no_device = true});
     CHECK(replay_product(r, 0, weights) && replay_frame(r, NULL, frame));
     if (variance)
-        replay_variance(r, &weights, variance);
+        replay_variance(r, &weights, NULL, variance);
     replay_destroy(r);
 }
 

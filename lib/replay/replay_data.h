@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a replay holds, for the files that work on it.
+#pragma once
+
+#include "cl/compute.h"
+#include "kernels/tile.h"
+#include "replay/replay.h"
+
+enum { REPLAY_ROW = TILE_CHANNELS * TILE_LANES }; // floats of a coefficient of a tile
+
+// Consecutive tiles of a block that one buffer of the device holds.
+struct replay_chunk {
+    size_t first, tiles;
+    bool resident; // stays on the device; others are sent each time
+    struct compute_buffer values;
+};
+
+struct replay_block {
+    const struct tensor_block *tensor;
+    float *sums; // [tile][channel][lane]
+    struct replay_chunk *chunks;
+    size_t chunk_count;
+    bool dirty; // sums are on the device, not here
+    struct compute_buffer out, weights, terms;
+};
+
+struct replay {
+    const struct tensor *tensor;
+    struct compute_device *device; // NULL: twins
+    int threads;
+    size_t room; // bytes of the device that are left for values
+    char name[300];
+    struct replay_block *blocks;
+};
+
+// The values of a chunk on the device, between open and close. false after an error message.
+bool replay_open_chunk(struct replay *r, const struct replay_block *b, struct replay_chunk *c);
+void replay_close_chunk(struct replay_chunk *c);
+
+// Kernel `name` for the storage of a block. NULL after an error message.
+struct compute_kernel *replay_kernel(struct replay *r, const struct replay_block *b,
+                                     const char *file, const char *name);
