@@ -4,7 +4,17 @@
 #include <math.h>
 
 static double urgency(const struct incremental *s, const double *wanted, uint32_t i) {
-    return fabs(wanted[i] - s->effective[i]) * (s->weight ? s->weight[i] : 1);
+    double sum = 0;
+    for (size_t k = i * s->channels; k < (i + (size_t)1) * s->channels; k++)
+        sum += (wanted[k] - s->effective[k]) * (wanted[k] - s->effective[k]);
+    return sqrt(sum) * (s->weight ? s->weight[i] : 1);
+}
+
+static int is_off(const struct incremental *s, const double *wanted, uint32_t i) {
+    for (size_t k = i * s->channels; k < (i + (size_t)1) * s->channels; k++)
+        if (wanted[k] != s->effective[k])
+            return 1;
+    return 0;
 }
 
 // Restores the heap below `root` whose top is the least urgent of the kept terms.
@@ -29,7 +39,7 @@ static size_t choose(const struct incremental *s, const double *wanted, size_t m
                      uint32_t *heap) {
     size_t n = 0;
     for (uint32_t i = 0; i < s->count && most > 0; i++) {
-        if (wanted[i] == s->effective[i])
+        if (!is_off(s, wanted, i))
             continue;
         if (n < most) {
             heap[n++] = i;
@@ -51,11 +61,15 @@ size_t incremental_step(struct incremental *s, const double *wanted, size_t most
     for (size_t left = n; left > 0; left--) { // the least urgent goes to the end
         const uint32_t i = order[0];
         index[left - 1] = i;
-        difference[left - 1] = wanted[i] - s->effective[i];
+        for (size_t k = 0; k < s->channels; k++)
+            difference[(left - 1) * s->channels + k] =
+                wanted[i * s->channels + k] - s->effective[i * s->channels + k];
         order[0] = order[left - 1];
         sift_down(s, wanted, order, left - 1, 0);
     }
-    for (size_t k = 0; k < n; k++)
-        s->effective[index[k]] = wanted[index[k]];
+    for (size_t k = 0; k < n * s->channels; k++) {
+        const size_t at = index[k / s->channels] * s->channels + k % s->channels;
+        s->effective[at] = wanted[at];
+    }
     return n;
 }

@@ -7,19 +7,21 @@
 //
 //     diff = c - c_eff,  keep the K largest of diff,  c_eff += diff,  R += T . diff
 //
-// Frames without edits go on until c_eff = c; with all terms kept a frame is exact.
+// Frames without edits go on until c_eff = c; with all terms kept a frame is exact. A term of several
+// channels counts by the root of the sum of squares.
 #pragma once
 
 #include <stddef.h>
 #include <stdint.h>
 
 struct incremental {
-    size_t count;
-    double *effective;   // c_eff, owned by the caller
+    size_t count, channels;
+    double *effective;    // c_eff, [count][channels], owned by the caller
     const double *weight; // how much a term counts in the picture (its root mean square); NULL: 1
 };
 
 // Writes the terms of this frame, at most `most` and largest first, adds them to c_eff and returns
-// how many there are. order: scratch of `count` indices.
+// how many there are. wanted: [count][channels]; difference: [most][channels]; order: scratch of
+// `count` indices.
 size_t incremental_step(struct incremental *s, const double *wanted, size_t most, uint32_t *index,
                         double *difference, uint32_t *order);

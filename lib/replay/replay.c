@@ -87,7 +87,8 @@ struct replay *replay_create(const struct tensor *t, const struct replay_options
     struct replay *r = mem_array(1, sizeof *r);
     r->tensor = t;
     r->threads = options->threads;
-    r->device = options->no_device ? NULL : compute_open();
+    r->borrowed = options->share != NULL;
+    r->device = r->borrowed ? options->share->device : options->no_device ? NULL : compute_open();
     if (r->device)
         snprintf(r->name, sizeof r->name, "OpenCL, %s", compute_name(r->device));
     else
@@ -118,7 +119,8 @@ void replay_destroy(struct replay *r) {
         mem_free(b->chunks);
         mem_free(b->sums);
     }
-    compute_close(r->device);
+    if (!r->borrowed)
+        compute_close(r->device);
     mem_free(r->blocks);
     mem_free(r);
 }

@@ -15,6 +15,7 @@ struct replay_options {
     bool no_device;     // only the C twins
     int threads;        // 0: default
     size_t most_memory; // bytes of values that stay on the device; 0: what it has
+    const struct replay *share; // use the device of this one, which must outlive it; NULL: open one
 };
 
 // The tensor must outlive it. NULL after an error message.

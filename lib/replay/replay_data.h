@@ -27,6 +27,7 @@ struct replay_block {
 struct replay {
     const struct tensor *tensor;
     struct compute_device *device; // NULL: twins
+    bool borrowed;                 // the device is another's
     int threads;
     size_t room; // bytes of the device that are left for values
     char name[300];

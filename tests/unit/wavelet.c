@@ -102,7 +102,7 @@ static void the_published_example_is_met(void) {
     static const double wanted[3][3] = {{4, 2, 1}, {4, 3, 1}, {4, 2, 0}}, T[3] = {3, 5, 2};
     static const double perfect[3] = {24, 29, 22}, step[3] = {12, 15, -5}, shown[3] = {12, 27, 22};
     double effective[3] = {0}, R = 0;
-    struct incremental s = {3, effective, NULL};
+    struct incremental s = {3, 1, effective, NULL};
     for (int t = 0; t < 3; t++) {
         uint32_t index[3], order[3];
         double difference[3], exact = 0, change = 0;
@@ -126,7 +126,7 @@ static void any_edit_is_reached(void) {
         wanted[i] = i % 3 ? (double)rng_float(&rng) - 0.5 : 0;
         weight[i] = (double)rng_float(&rng);
     }
-    struct incremental s = {256, effective, weight};
+    struct incremental s = {256, 1, effective, weight};
     size_t frames = 0, n;
     double last = INFINITY;
     while ((n = incremental_step(&s, wanted, 30, index, difference, order)) > 0) {

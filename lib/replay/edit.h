@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// An editing session over an edit tensor: changes go in, pictures come out.
+//
+// Without focus a frame is a full product of every block whose weights changed, right for any tensor
+// and any edit. A focus on one curve of an object contracts all else first (replay/edit_focus.h), so
+// that frames cost what that curve costs; it moves by itself to where changes happen. With `terms`
+// frames are updated by that many wavelet coefficients each (curve/incremental.h) and are exact once
+// changes pause; sums are then made anew, so that rounding does not add up.
+#pragma once
+
+#include "replay/edit_change.h"
+
+struct edit;
+
+struct edit_options {
+    bool no_device;     // only the C twins
+    int threads;        // 0: default
+    size_t most_memory; // as struct replay_options has it
+    bool focus;         // freeze what is not edited
+    uint32_t terms;     // coefficients that a frame may change; 0: all. Needs focus
+};
+
+// The tensor must outlive it; path is for messages. NULL after an error message.
+struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_options *o);
+void edit_destroy(struct edit *e); // NULL is fine
+
+struct edit_tensor *edit_objects(struct edit *e); // to be looked at
+const char *edit_device(const struct edit *e);
+
+enum edit_kind { EDIT_SET, EDIT_CURVE, EDIT_OPERATE, EDIT_RESET };
+
+// A change as replay/edit_change.h has it. false after an error message.
+bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const char *at);
+
+// The picture of the objects as they are, three planes. false after an error message.
+bool edit_frame(struct edit *e, float *frame);
+// Whether the last frame was exact; with `terms` it may lag behind.
+bool edit_is_exact(const struct edit *e);
+// Asks for the next frame to be made anew, all of it.
+void edit_forget(struct edit *e);
+
+// What the tensor's own noise makes of the picture: variance per pixel (replay_variance).
+void edit_variance(struct edit *e, float *variance);
+
+struct edit_cost {
+    double switch_seconds;       // contracting when the focus last moved
+    uint64_t coefficients, bytes; // read by the last frame
+};
+struct edit_cost edit_last_cost(const struct edit *e);

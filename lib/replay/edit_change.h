@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Changes to the objects of an edit tensor, as a person says them.
+//
+//     set      OBJECT.PARAM=V or OBJECT.TERM.PARAM=V: the model makes its curves anew with that number
+//              (curve/parameters.h); curves whose formula does not change keep what was edited.
+//              Numbers are relative to the scene's textures: reflectance=0.5 halves.
+//              OBJECT.TERM.scale=V: f_q itself. V is a number or, for colours, R,G,B
+//     curve    OBJECT.TERM.f_A=FILE.csv (curve/curve.h), brought to the term's own basis
+//     operate  OBJECT.TERM.f_A:amplify-y,a,b,c,d,m[,base];... (curve/operators.h); f_A.r, f_A.gb:
+//              in these channels only
+//     reset    OBJECT: as it was in the scene
+#pragma once
+
+#include "replay/edit_tensor.h"
+
+// What a change touched: one curve of an object; EDIT_NONE: numbers outside the curves alone.
+struct edit_touch {
+    uint32_t object, curve;
+    bool several; // more than one curve
+};
+
+// Each gives false after an error message, which names `at`, and then changes nothing.
+bool edit_set(struct edit_tensor *e, const char *text, const char *at, struct edit_touch *touch);
+bool edit_load_curve(struct edit_tensor *e, const char *text, const char *at,
+                     struct edit_touch *touch);
+bool edit_operate(struct edit_tensor *e, const char *text, const char *at, struct edit_touch *touch);
+bool edit_reset(struct edit_tensor *e, const char *object, const char *at, struct edit_touch *touch);

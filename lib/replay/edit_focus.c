@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/edit_focus.h"
+
+#include <string.h>
+
+#include "base/mem.h"
+
+// ---- powers -------------------------------------------------------------------------------------
+
+static bool same_group(const struct edit_group *a, const struct edit_group *b) {
+    return a->count == b->count &&
+           (a->count == 0 || memcmp(a->factors, b->factors, a->count * sizeof *a->factors) == 0);
+}
+
+// The active factors of a group, ascending.
+static struct edit_group active_part(const struct edit_focus *f, const struct edit_group *g,
+                                     uint32_t *out) {
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < g->count; i++) {
+        if (!f->active[g->factors[i]])
+            continue;
+        uint32_t at = n++;
+        for (; at > 0 && out[at - 1] > g->factors[i]; at--)
+            out[at] = out[at - 1];
+        out[at] = g->factors[i];
+    }
+    return (struct edit_group){n, out};
+}
+
+static uint32_t find_power(struct edit_focus *f, const struct edit_group *g) {
+    uint32_t h = 0;
+    while (h < f->power_count && !same_group(&f->powers[h], g))
+        h++;
+    if (h == f->power_count) {
+        uint32_t *own = arena_alloc(&f->arena, (g->count + 1) * sizeof *own);
+        memcpy(own, g->factors, g->count * sizeof *own);
+        f->powers[f->power_count++] = (struct edit_group){g->count, own};
+    }
+    return h;
+}
+
+void edit_focus_init(struct edit_focus *f, const struct edit_tensor *e, uint32_t object,
+                     uint32_t curve) {
+    *f = (struct edit_focus){.object = object, .curve = curve};
+    f->active = arena_alloc(&f->arena, (e->factor_count + 1) * sizeof *f->active);
+    f->powers = arena_alloc(&f->arena, e->group_count * sizeof *f->powers);
+    f->power_of = arena_alloc(&f->arena, e->group_count * sizeof *f->power_of);
+    for (uint32_t i = 0; i < e->factor_count; i++)
+        f->active[i] = e->factors[i].object == object;
+    for (uint32_t g = 0; g < e->group_count; g++) {
+        uint32_t scratch[64]; // a group has no more factors
+        const struct edit_group part = active_part(f, &e->groups[g], scratch);
+        f->power_of[g] = find_power(f, &part);
+    }
+}
+
+void edit_focus_finish(struct edit_focus *f) {
+    arena_finish(&f->arena);
+    *f = (struct edit_focus){0};
+}
+
+// ---- blocks -------------------------------------------------------------------------------------
+
+unsigned edit_focus_axes(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block) {
+    unsigned axes = 0;
+    if (e->blocks[block].object != f->object || f->curve == EDIT_NONE)
+        return 0;
+    for (uint32_t i = 0; i < e->tensor->blocks[block].axis_count; i++)
+        axes |= (unsigned)(edit_axis_curve(e, block, i) == f->curve) << i;
+    return axes;
+}
+
+// Bins of an axis where it is in the set; else 1.
+static uint32_t bins_in(const struct tensor_block *b, uint32_t axis, unsigned axes) {
+    return axis < b->axis_count && axes >> axis & 1 ? b->axes[axis].bins : 1;
+}
+
+uint32_t edit_focus_coefficients(const struct edit_focus *f, const struct edit_tensor *e,
+                                 uint32_t block) {
+    const struct tensor_block *b = &e->tensor->blocks[block];
+    const unsigned axes = edit_focus_axes(f, e, block);
+    return f->power_count * bins_in(b, 0, axes) * bins_in(b, 1, axes);
+}
+
+// Where each coefficient goes.
+static void find_targets(const struct edit_focus *f, const struct tensor_block *b, unsigned axes,
+                         uint32_t *target) {
+    const uint32_t rows = bins_in(b, 0, EDIT_ALL_AXES), columns = bins_in(b, 1, EDIT_ALL_AXES);
+    const uint32_t kept_rows = bins_in(b, 0, axes), kept_columns = bins_in(b, 1, axes);
+    for (uint32_t g = 0; g < b->groups; g++)
+        for (uint32_t i = 0; i < rows; i++)
+            for (uint32_t j = 0; j < columns; j++)
+                *target++ = (f->power_of[g] * kept_rows + (axes & 1 ? i : 0)) * kept_columns +
+                            (axes & 2 ? j : 0);
+}
+
+// What each coefficient is multiplied by: frozen factors and the axes that go.
+static double *find_weights(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block,
+                            const double (*values)[CURVE_CHANNELS], unsigned axes) {
+    const struct tensor_block *b = &e->tensor->blocks[block];
+    const uint32_t rows = bins_in(b, 0, EDIT_ALL_AXES), columns = bins_in(b, 1, EDIT_ALL_AXES);
+    const uint32_t gone_rows = bins_in(b, 0, ~axes), gone_columns = bins_in(b, 1, ~axes);
+    double(*groups)[CURVE_CHANNELS] = mem_array(b->groups, sizeof *groups);
+    bool *frozen = mem_array(e->factor_count, sizeof *frozen);
+    double *part = mem_array((size_t)b->groups * gone_rows * gone_columns * 3, sizeof *part);
+    double *all = mem_array((size_t)b->coefficients * 3, sizeof *all), *out = all;
+    for (uint32_t i = 0; i < e->factor_count; i++)
+        frozen[i] = !f->active[i];
+    for (uint32_t g = 0; g < b->groups; g++)
+        edit_group_value(&e->groups[g], values, frozen, groups[g]);
+    edit_weights(e, block, (const double(*)[CURVE_CHANNELS])groups, b->groups,
+                 ~axes & EDIT_ALL_AXES, part);
+    for (uint32_t g = 0; g < b->groups; g++)
+        for (uint32_t i = 0; i < rows; i++)
+            for (uint32_t j = 0; j < columns; j++, out += 3)
+                memcpy(out, part + 3 * (((size_t)g * gone_rows + (axes & 1 ? 0 : i)) * gone_columns +
+                                        (axes & 2 ? 0 : j)), 3 * sizeof *out);
+    mem_free(groups);
+    mem_free(frozen);
+    mem_free(part);
+    return all;
+}
+
+void edit_focus_contraction(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block,
+                            const double (*values)[CURVE_CHANNELS], struct arena *arena,
+                            struct contraction *c) {
+    const uint32_t n = e->tensor->blocks[block].coefficients;
+    const unsigned axes = edit_focus_axes(f, e, block);
+    const uint32_t reduced = edit_focus_coefficients(f, e, block);
+    uint32_t *target = mem_array(n, sizeof *target), *next = mem_array(reduced, sizeof *next);
+    uint32_t *start = arena_alloc(arena, ((size_t)reduced + 1) * sizeof *start);
+    uint32_t *index = arena_alloc(arena, (size_t)n * sizeof *index);
+    float *weight = arena_alloc(arena, (size_t)n * 3 * sizeof *weight);
+    double *all = find_weights(f, e, block, values, axes);
+    find_targets(f, &e->tensor->blocks[block], axes, target);
+    for (uint32_t i = 0; i < n; i++)
+        start[target[i] + 1]++;
+    for (uint32_t r = 0; r < reduced; r++) {
+        start[r + 1] += start[r];
+        next[r] = start[r];
+    }
+    for (uint32_t i = 0; i < n; i++) {
+        const uint32_t at = next[target[i]]++;
+        index[at] = i;
+        for (size_t k = 0; k < 3; k++)
+            weight[3 * (size_t)at + k] = (float)all[3 * (size_t)i + k];
+    }
+    *c = (struct contraction){reduced, start, index, weight};
+    mem_free(target);
+    mem_free(next);
+    mem_free(all);
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/edit_weights.h"
+
+#include <math.h>
+
+static const struct form_term *term_of(const struct edit_tensor *e, uint32_t block) {
+    const struct edit_block *b = &e->blocks[block];
+    return b->object == EDIT_NONE ? NULL : &e->objects[b->object].form.term[b->term];
+}
+
+void edit_scale(const struct edit_tensor *e, uint32_t block, float scale[CURVE_CHANNELS]) {
+    const struct form_term *t = term_of(e, block);
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        scale[k] = t ? (float)t->scale[k] : 1;
+}
+
+bool edit_view_factor(const struct edit_tensor *e, uint32_t block, float *factor) {
+    const struct form_term *t = term_of(e, block);
+    const struct tensor_block *b = &e->tensor->blocks[block];
+    if (!t || !edit_has_slot(t, SLOT_O))
+        return false;
+    const struct curve *c = e->objects[e->blocks[block].object].curve[t->slots[SLOT_O].curve];
+    for (uint64_t i = 0; i < tensor_tiles(b) * TENSOR_LANES; i++) {
+        uint32_t index[2];
+        double value[2];
+        const uint32_t n = basis_at(&c->basis, (double)b->view[i], index, value);
+        for (uint32_t k = 0; k < CURVE_CHANNELS; k++) {
+            double sum = 0;
+            for (uint32_t m = 0; m < n; m++)
+                sum += value[m] * curve_values(c, k)[index[m]];
+            factor[(i / TENSOR_LANES * CURVE_CHANNELS + k) * TENSOR_LANES + i % TENSOR_LANES] =
+                (float)sum;
+        }
+    }
+    return true;
+}
+
+// ---- factors ------------------------------------------------------------------------------------
+
+// Mean of a curve of theta_o over directions to the eye, weighted by their cosine.
+static double view_mean(const struct curve *c, uint32_t channel) {
+    enum { STEPS = 2048 };
+    double sum = 0, all = 0;
+    for (int i = 0; i < STEPS; i++) {
+        const double gamma = CURVE_END * (i + 0.5) / STEPS, w = sin(2 * gamma);
+        sum += w * curve_at(c, channel, gamma);
+        all += w;
+    }
+    return sum / all;
+}
+
+static void outer_value(const struct edit_object *o, uint32_t term, double value[CURVE_CHANNELS]) {
+    const struct form_term *t = &o->form.term[term];
+    for (uint32_t k = 0; k < CURVE_CHANNELS; k++) {
+        value[k] = t->scale[k];
+        if (edit_has_slot(t, SLOT_O))
+            value[k] *= view_mean(o->curve[t->slots[SLOT_O].curve], k);
+    }
+}
+
+static const struct curve *curve_in(const struct edit_object *o, const struct form_term *t,
+                                    enum form_slot_name slot) {
+    return edit_has_slot(t, slot) ? o->curve[t->slots[slot].curve] : NULL;
+}
+
+// sum_{j,k} cA_j cB_k e[j][k]
+static double curves_albedo(const struct edit_object *o, uint32_t term, uint32_t channel) {
+    const struct form_term *t = &o->form.term[term];
+    const struct curve *a = curve_in(o, t, SLOT_A), *b = curve_in(o, t, SLOT_B);
+    const uint32_t rows = a ? a->basis.count : 1, columns = b ? b->basis.count : 1;
+    double sum = 0;
+    for (uint32_t j = 0; j < rows; j++)
+        for (uint32_t k = 0; k < columns; k++)
+            sum += (a ? curve_values(a, channel)[j] : 1) * (b ? curve_values(b, channel)[k] : 1) *
+                   o->albedo[term][((size_t)j * columns + k) * CURVE_CHANNELS + channel];
+    return sum;
+}
+
+static void albedo_value(const struct edit_object *o, double value[CURVE_CHANNELS]) {
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        value[k] = 0;
+    for (uint32_t t = 0; t < o->form.terms; t++) {
+        double outer[CURVE_CHANNELS];
+        outer_value(o, t, outer);
+        for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+            value[k] += o->share[t][k] * outer[k] * curves_albedo(o, t, k);
+    }
+}
+
+// Where function j of a basis lies: its bin, or halfway to its neighbours.
+static void support(const struct basis *b, uint32_t j, double *lo, double *hi) {
+    if (b->kind == BASIS_BOX) {
+        *lo = b->knots[j];
+        *hi = b->knots[j + 1];
+        return;
+    }
+    *lo = j > 0 ? 0.5 * (b->knots[j - 1] + b->knots[j]) : b->knots[0];
+    *hi = j + 1 < b->count ? 0.5 * (b->knots[j] + b->knots[j + 1]) : b->knots[j];
+}
+
+static double coarse_mean(const struct edit_object *o, const struct edit_factor *f,
+                          uint32_t channel) {
+    const struct form_term *t = &o->form.term[f->term];
+    const struct curve *a = curve_in(o, t, SLOT_A), *b = curve_in(o, t, SLOT_B);
+    const uint32_t columns = b ? b->basis.count : 1;
+    double sum = 0, all = 0, plain = 0, width = 0;
+    for (uint32_t j = 0; j < a->basis.count; j++) {
+        double lo, hi, e = 0;
+        support(&a->basis, j, &lo, &hi);
+        const double over = fmin(hi, f->knots[f->bin + 1]) - fmax(lo, f->knots[f->bin]);
+        if (!(over > 0))
+            continue;
+        for (uint32_t k = 0; k < columns && o->albedo[f->term]; k++)
+            e += (b ? curve_values(b, channel)[k] : 1) *
+                 o->albedo[f->term][((size_t)j * columns + k) * CURVE_CHANNELS + channel];
+        sum += over / (hi - lo) * e * curve_values(a, channel)[j];
+        all += over / (hi - lo) * e;
+        plain += over * curve_values(a, channel)[j];
+        width += over;
+    }
+    return all > 0 ? sum / all : width > 0 ? plain / width : 0;
+}
+
+void edit_factor_value(const struct edit_tensor *e, const struct edit_factor *f,
+                       double value[CURVE_CHANNELS]) {
+    const struct edit_object *o = &e->objects[f->object];
+    if (f->term == EDIT_NONE) {
+        albedo_value(o, value);
+        return;
+    }
+    outer_value(o, f->term, value);
+    for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+        value[k] *= coarse_mean(o, f, k);
+}
+
+void edit_group_value(const struct edit_group *g, const double (*values)[CURVE_CHANNELS],
+                      const bool *with, double product[CURVE_CHANNELS]) {
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        product[k] = 1;
+    for (uint32_t i = 0; i < g->count; i++)
+        for (int k = 0; k < CURVE_CHANNELS && (!with || with[g->factors[i]]); k++)
+            product[k] *= values[g->factors[i]][k];
+}
+
+// ---- weights ------------------------------------------------------------------------------------
+
+void edit_weights(const struct edit_tensor *e, uint32_t block,
+                  const double (*groups)[CURVE_CHANNELS], uint32_t group_count, unsigned axes,
+                  double *weights) {
+    const struct edit_block *own = &e->blocks[block];
+    const struct tensor_block *b = &e->tensor->blocks[block];
+    const struct curve *c[TENSOR_MOST_AXES] = {NULL, NULL};
+    uint32_t bins[TENSOR_MOST_AXES] = {1, 1};
+    for (uint32_t i = 0; i < b->axis_count; i++)
+        if (axes >> i & 1) {
+            c[i] = e->objects[own->object].curve[edit_axis_curve(e, block, i)];
+            bins[i] = b->axes[i].bins;
+        }
+    for (uint32_t g = 0; g < group_count; g++)
+        for (uint32_t i = 0; i < bins[0]; i++)
+            for (uint32_t j = 0; j < bins[1]; j++)
+                for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+                    *weights++ = groups[g][k] * (c[0] ? curve_values(c[0], k)[i] : 1) *
+                                 (c[1] ? curve_values(c[1], k)[j] : 1);
+}
