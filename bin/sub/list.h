@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The subcommands, in the order in which --help lists them: one X(name) line each.
 X(render)
+X(measure)
 X(precompute)
 X(relight)
 X(merge)

@@ -106,6 +106,9 @@ struct bsdf_type {
 
 extern const struct registry bsdfs;
 
+// A white Lambertian surface: the radiance that it returns, times pi, is the irradiance on it.
+extern const struct object bsdf_white;
+
 static inline const struct bsdf_type *bsdf_type_of(const struct object *o) {
     return (const struct bsdf_type *)o->type;
 }

@@ -66,6 +66,10 @@ static spectrum albedo(const struct closure *closure) {
     return ((const struct diffuse_closure *)(const void *)closure)->reflectance;
 }
 
+static struct diffuse white = {{{1, 1, 1, 0}, NULL}};
+
+const struct object bsdf_white = {.type = &bsdf_diffuse.entry, .data = &white};
+
 const struct bsdf_type bsdf_diffuse = {
     .entry = {.name = "diffuse", .help = "ideal diffuse reflection (Lambert 1760)",
               .params = params, .size = sizeof(struct diffuse)},

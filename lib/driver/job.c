@@ -120,17 +120,35 @@ static bool set_render_options(struct job *job, const struct job_options *o) {
     return choose_range(o->samples, &job->render, &job->film.first);
 }
 
+// The first sensor, and the filter of its pixels.
+static bool prepare_sensor(struct job *job) {
+    struct scene *s = job->scene;
+    const struct object *sensor = s->sensors[0];
+    const struct sensor_type *type = sensor_type_of(sensor);
+    const struct sensor_scene scene = {
+        .width = s->film.width, .height = s->film.height,
+        .centre = {s->centre[0], s->centre[1], s->centre[2]}, .arena = &s->arena,
+        .shape = s->sensor_shape == SCENE_NONE ? NULL : &s->shapes[s->sensor_shape]};
+    if (type->place && !integrator_meters(s->integrator)) {
+        log_error_at(sensor->at, "integrator \"%s\" cannot serve a %s; path and volpath can",
+                     s->integrator->type->name, sensor->type->name);
+        return false;
+    }
+    if (!type->prepare(s->sensors[0], &scene))
+        return false;
+    if (type->own_area)
+        job->filter = filter_sampler_box;
+    return type->own_area || filter_sampler_init(&job->filter, s->filter);
+}
+
 static bool prepare(struct job *job, const struct job_options *o) {
     struct scene *s = job->scene;
-    const struct sensor_type *sensor = sensor_type_of(s->sensors[0]);
     job->film = (struct film_options){.alpha = s->film.alpha, .paths = o->paths,
                                       .variance = o->variance || o->noise > 0};
     if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
         !choose_crop(o, &s->film, &job->film) ||
         !prepare_integrator(o, s, job->world, &job->method, &job->film) ||
-        !sensor->prepare(s->sensors[0], s->film.width, s->film.height, s->centre) ||
-        (o->light_groups && !light_groups_init(&job->groups, s)) ||
-        !filter_sampler_init(&job->filter, s->filter))
+        !prepare_sensor(job) || (o->light_groups && !light_groups_init(&job->groups, s)))
         return false;
     job->film.group_count = job->groups.count;
     job->film.group_names = job->groups.names;

@@ -13,6 +13,7 @@ static const double STOP_SECONDS = 1.5; // a run may go on for this long after a
 struct worker {
     struct trace_context ctx;
     struct closure_stack stack;
+    struct surface *receivers; // by lane, of a meter of irradiance; NULL: the sensor is a camera
 };
 
 struct tracer {
@@ -32,11 +33,36 @@ struct batch {
     float weights[SINK_MOST_LANES];
 };
 
+// A place of a meter as a white surface that is looked at along its normal. Returns what turns the
+// radiance it sends back into irradiance.
+static float receive(const struct sensor_place *place, struct surface *s, struct ray *ray) {
+    *s = (struct surface){.p = place->p, .p_error = place->p_error, .ng = place->n,
+                          .bsdf = &bsdf_white, .light = SCENE_NONE, .shape = SCENE_NONE,
+                          .instance = SCENE_NONE};
+    s->point.frame = frame_from_normal(place->n);
+    *ray = (struct ray){place->p, -place->n, 0, INFINITY};
+    return PI * place->weight;
+}
+
+// The path of one lane through a point of the film; returns its weight.
+static float start_path(const struct tracer_options *o, struct worker *w, uint32_t lane, float x,
+                        float y, struct vec2 lens, struct path_start *start) {
+    const struct sensor_type *sensor = sensor_type_of(o->sensor);
+    struct sensor_place place;
+    start->surface = NULL;
+    if (!sensor->place) {
+        sensor->ray(o->sensor->data, x, y, lens, &start->ray);
+        return 1;
+    }
+    sensor->place(o->sensor->data, x, y, &place);
+    start->surface = &w->receivers[lane];
+    return receive(&place, &w->receivers[lane], &start->ray);
+}
+
 // Adds the sixteen paths of one 4x4 block for one sample.
 static void start_paths(const struct tracer *t, struct worker *w, int x0, int y0, uint32_t sample,
                         struct batch *b) {
     const struct tracer_options *o = &t->options;
-    const struct sensor_type *sensor = sensor_type_of(o->sensor);
     struct sink *sink = w->ctx.sink;
     for (int i = 0; i < SINK_LANES; i++) {
         const uint32_t lane = b->count++;
@@ -45,8 +71,8 @@ static void start_paths(const struct tracer *t, struct worker *w, int x0, int y0
                                          o->replicates, o->seed);
         const struct vec2 d = filter_sample(o->filter, sampler_2d(&s), &b->weights[lane]);
         const struct vec2 lens = sampler_2d(&s);
-        sensor->ray(o->sensor->data, (float)x + 0.5f + d.x, (float)y + 0.5f + d.y, lens,
-                    &b->starts[lane].ray);
+        b->weights[lane] *= start_path(o, w, lane, (float)x + 0.5f + d.x, (float)y + 0.5f + d.y, lens,
+                                       &b->starts[lane]);
         b->starts[lane].sampler = s;
         sink->type->place(sink, (int)lane, x, y, sample);
         sink->type->begin(sink, (int)lane);
@@ -132,6 +158,8 @@ struct tracer *tracer_create(const struct tracer_options *options,
         w->ctx = (struct trace_context){
             .world = options->world, .sink = make_sink(context), .stack = &w->stack,
             .response = options->response ? options->response : &response_physical};
+        if (sensor_type_of(options->sensor)->place)
+            w->receivers = mem_array(SINK_MOST_LANES, sizeof *w->receivers);
     }
     return t;
 }
@@ -160,6 +188,7 @@ void tracer_destroy(struct tracer *t) {
     for (int i = 0; i < t->threads; i++) {
         struct sink *s = t->workers[i].ctx.sink;
         s->type->destroy(s);
+        mem_free(t->workers[i].receivers);
     }
     mem_free(t->workers);
     mem_free(t);

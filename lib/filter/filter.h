@@ -29,6 +29,8 @@ struct filter_sampler {
     struct filter_table *table; // NULL: box, which needs none
 };
 
+extern const struct filter_sampler filter_sampler_box; // a pixel itself
+
 bool filter_sampler_init(struct filter_sampler *s, struct object *filter);
 void filter_sampler_finish(struct filter_sampler *s);
 // Offset from the pixel's centre and the weight of the sample (mean 1 over all u).

@@ -88,6 +88,8 @@ static struct filter_table *table_create(const struct object *filter, double rad
     return t;
 }
 
+const struct filter_sampler filter_sampler_box = {.radius = 0.5f};
+
 bool filter_sampler_init(struct filter_sampler *s, struct object *filter) {
     const struct filter_type *type = (const struct filter_type *)filter->type;
     *s = (struct filter_sampler){0};

@@ -88,5 +88,5 @@ static void trace(const void *data, struct trace_context *ctx,
 const struct integrator_type integrator_aov = {
     .entry = {.name = "aov", .help = "layers of the first hit: albedo, normals, depth, ...",
               .params = params, .size = sizeof(struct aov)},
-    .prepare = prepare, .trace = trace,
+    .prepare = prepare, .trace = trace, .meters = true,
 };

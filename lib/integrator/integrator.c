@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/integrator.h"
 
+#include <string.h>
+
 static const struct entry *const entries[] = {
 #define X(name) &integrator_##name.entry,
 #include "integrator/list.h"
@@ -9,3 +11,14 @@ static const struct entry *const entries[] = {
 };
 
 const struct registry integrators = {"integrator", entries};
+
+bool integrator_meters(const struct object *integrator) {
+    bool meters = integrator_type_of(integrator)->meters;
+    for (const struct param *p = integrator->type->params; p && p->name; p++)
+        if (p->type == PARAM_INTEGRATOR) {
+            const struct object *nested;
+            memcpy(&nested, (const char *)integrator->data + p->offset, sizeof nested);
+            meters = meters && nested && integrator_meters(nested);
+        }
+    return meters;
+}

@@ -17,6 +17,9 @@
 struct path_start {
     struct ray ray;
     struct sampler sampler; // after the sensor took its dimensions
+    // What the ray has found already, of a meter that is no shape of the scene; NULL: to be traced.
+    // The same for all of a call.
+    const struct surface *surface;
 };
 
 // What one worker needs, and counts.
@@ -54,6 +57,7 @@ struct integrator_type {
     void (*trace)(const void *data, struct trace_context *ctx, const struct path_start *starts);
     uint32_t most_lanes; // of one call; 0: SINK_LANES
     bool sees_media;
+    bool meters; // heeds path_start.surface, or its nested integrator does
 };
 
 // How lights are chosen, for integrators that sample them: an int, to be passed on by prepare.
@@ -71,6 +75,9 @@ struct integrator_type {
 #undef X
 
 extern const struct registry integrators;
+
+// Whether an integrator, with what is nested in it, can begin paths at path_start.surface.
+bool integrator_meters(const struct object *integrator);
 
 static inline const struct integrator_type *integrator_type_of(const struct object *o) {
     return (const struct integrator_type *)o->type;

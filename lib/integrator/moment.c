@@ -29,5 +29,5 @@ static void trace(const void *data, struct trace_context *ctx,
 const struct integrator_type integrator_moment = {
     .entry = {.name = "moment", .help = "second moments of a nested integrator, as layer m2",
               .params = params, .size = sizeof(struct moment)},
-    .prepare = prepare, .trace = trace,
+    .prepare = prepare, .trace = trace, .meters = true,
 };

@@ -106,35 +106,40 @@ static void sample_light(const struct path *p, struct trace_context *ctx, struct
 }
 
 // One vertex: emission found, light sampled, direction chosen.
-static void shade(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
-                  const struct accel_hit *hit) {
-    struct surface s;
+static void shade_surface(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
+                          const struct surface *s) {
     struct bsdf_sample b = {.lobe = 0};
-    world_surface(ctx->world, &l->ray, hit, &s);
     if (l->from.depth > 0 || !p->hide_emitters)
-        vertex_add_emission(ctx, i, &s, l->ray.d, l->beta, &l->from);
-    const vec3 wo = to_local(&s.point.frame, -l->ray.d);
-    const struct closure *closure = response_resolve(ctx, i, l->from.depth, &s, wo);
+        vertex_add_emission(ctx, i, s, l->ray.d, l->beta, &l->from);
+    const vec3 wo = to_local(&s->point.frame, -l->ray.d);
+    const struct closure *closure = response_resolve(ctx, i, l->from.depth, s, wo);
     const bool goes_on = closure && path_may_contribute(p, l->events + 1) &&
-                         (!p->strict_normals || same_side(&s, -l->ray.d, wo));
-    const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);
+                         (!p->strict_normals || same_side(s, -l->ray.d, wo));
+    const vec3 side = goes_on ? vertex_light_side(s, closure, wo) : v3(0, 0, 0);
     if (goes_on && closure->lobes & LOBE_SMOOTH)
-        sample_light(p, ctx, l, &s, closure, side);
+        sample_light(p, ctx, l, s, closure, side);
     l->alive = false;
     if (goes_on) {
         const float lobe = sampler_1d(draw(l, DRAW_LOBE));
         l->alive = closure_sample(closure, lobe, sampler_2d(draw(l, DRAW_DIRECTION)), &b);
     }
     if (!l->first_done && !(b.lobe & LOBE_NULL))
-        first_event(ctx, i, l, &s, closure);
+        first_event(ctx, i, l, s, closure);
     if (l->alive && b.lobe & LOBE_NULL)
-        pass_through(l, &s, &b);
+        pass_through(l, s, &b);
     else if (l->alive)
-        scatter(p, l, &s, side, &b);
+        scatter(p, l, s, side, &b);
     if (++l->events >= INTEGRATOR_MOST_EVENTS && l->alive) {
         l->alive = false;
         ctx->truncated++;
     }
+}
+
+static void shade(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
+                  const struct accel_hit *hit) {
+    struct surface s;
+    world_surface(ctx->world, &l->ray, hit, &s);
+    shade_surface(p, ctx, i, l, &s);
 }
 
 static void start(struct trace_context *ctx, struct lane *l, const struct path_start *from) {
@@ -261,17 +266,10 @@ static void shade_all(const struct path *p, struct trace_context *ctx, struct wa
         shade(p, ctx, others[k], &w->lanes[others[k]], &hits[others[k]]);
 }
 
-// One vertex of every living lane, stage by stage.
-static void advance(const struct path *p, struct trace_context *ctx, struct wave *w, bool camera) {
-    struct accel_hit hits[MOST_LANES]; // by lane
+// Drops the lanes that have ended at a vertex, after the shadow rays of all.
+static void settle(struct trace_context *ctx, struct wave *w, bool first) {
     uint16_t pending[MOST_LANES];
     uint32_t survivors = 0, tests = 0;
-    struct packet packet;
-    for (uint32_t first = 0; first < w->count; first += (uint32_t)packet.count) {
-        packet = packet_at(ctx->world, w->alive, w->count, first);
-        find_hits(ctx, w->lanes, &packet, camera, hits);
-    }
-    shade_all(p, ctx, w, hits);
     for (uint32_t k = 0; k < w->count; k++) {
         const uint16_t i = w->alive[k];
         if (w->lanes[i].shadow.pending)
@@ -280,7 +278,29 @@ static void advance(const struct path *p, struct trace_context *ctx, struct wave
             w->alive[survivors++] = i; // never ahead of what is read
     }
     w->count = survivors;
-    finish_shadows(ctx, w->lanes, pending, tests, camera);
+    finish_shadows(ctx, w->lanes, pending, tests, first);
+}
+
+// One vertex of every living lane, stage by stage.
+static void advance(const struct path *p, struct trace_context *ctx, struct wave *w, bool camera) {
+    struct accel_hit hits[MOST_LANES]; // by lane
+    struct packet packet;
+    for (uint32_t first = 0; first < w->count; first += (uint32_t)packet.count) {
+        packet = packet_at(ctx->world, w->alive, w->count, first);
+        find_hits(ctx, w->lanes, &packet, camera, hits);
+    }
+    shade_all(p, ctx, w, hits);
+    settle(ctx, w, camera);
+}
+
+// The first vertex, where it is no hit.
+static void begin_at_surfaces(const struct path *p, struct trace_context *ctx, struct wave *w,
+                              const struct path_start *starts) {
+    for (uint32_t i = 0; i < w->count; i++) {
+        w->lanes[i].shadow.pending = false;
+        shade_surface(p, ctx, (int)i, &w->lanes[i], starts[i].surface);
+    }
+    settle(ctx, w, true);
 }
 
 static void trace(const void *data, struct trace_context *ctx, const struct path_start *starts) {
@@ -290,14 +310,17 @@ static void trace(const void *data, struct trace_context *ctx, const struct path
         start(ctx, &w.lanes[w.count], &starts[w.count]);
         w.alive[w.count] = (uint16_t)w.count;
     }
-    if (path_may_contribute(p, 0))
-        for (bool camera = true; w.count; camera = false)
-            advance(p, ctx, &w, camera);
+    if (!path_may_contribute(p, 0))
+        return;
+    if (starts->surface)
+        begin_at_surfaces(p, ctx, &w, starts);
+    for (bool camera = !starts->surface; w.count; camera = false)
+        advance(p, ctx, &w, camera);
 }
 
 const struct integrator_type integrator_path = {
     .entry = {.name = "path",
               .help = "path tracing with next event estimation and MIS (Kajiya 1986; Veach 1995)",
               .params = params, .size = sizeof(struct path)},
-    .prepare = prepare, .trace = trace, .most_lanes = MOST_LANES,
+    .prepare = prepare, .trace = trace, .most_lanes = MOST_LANES, .meters = true,
 };

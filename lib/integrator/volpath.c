@@ -8,5 +8,5 @@ const struct integrator_type integrator_volpath = {
     .entry = {.name = "volpath",
               .help = "path tracing with participating media (Novak et al. 2014; Kutz et al. 2017)",
               .params = params, .size = sizeof(struct volume_path)},
-    .prepare = volume_path_prepare, .trace = volume_path_trace, .sees_media = true,
+    .prepare = volume_path_prepare, .trace = volume_path_trace, .sees_media = true, .meters = true,
 };

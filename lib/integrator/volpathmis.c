@@ -14,5 +14,5 @@ const struct integrator_type integrator_volpathmis = {
     .entry = {.name = "volpathmis",
               .help = "volpath for coloured media: spectral MIS (Miller et al. 2019)",
               .params = params, .size = sizeof(struct volume_path)},
-    .prepare = volume_path_prepare, .trace = volume_path_trace, .sees_media = true,
+    .prepare = volume_path_prepare, .trace = volume_path_trace, .sees_media = true, .meters = true,
 };

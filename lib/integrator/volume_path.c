@@ -61,7 +61,8 @@ static spectrum throughput(const struct walker *w) {
 // The medium behind a boundary that is left along d.
 static uint32_t across(const struct world *world, const struct surface *s, vec3 d,
                        uint32_t medium) {
-    const struct world_boundary *b = world->boundaries ? &world->boundaries[s->shape] : NULL;
+    const bool shape = world->boundaries && s->shape != SCENE_NONE;
+    const struct world_boundary *b = shape ? &world->boundaries[s->shape] : NULL;
     if (!b || !b->parts)
         return medium;
     return dot(d, s->ng) > 0 ? b->exterior : b->interior;
@@ -253,43 +254,52 @@ static void scatter_at_surface(struct walker *w, const struct surface *s, vec3 s
     w->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, w->from.depth + 1,
                                    first_lobe, side};
     leave_surface(w, s, wi);
-    const struct world_boundary *boundaries = w->ctx->world->boundaries;
+    const struct world_boundary *boundaries = s->shape == SCENE_NONE ? NULL : w->ctx->world->boundaries;
     if (w->alive)
         survive_roulette(w, boundaries && boundaries[s->shape].parts);
 }
 
-static void shade(struct walker *w, const struct accel_hit *hit) {
-    struct surface s;
+static void shade_surface(struct walker *w, const struct surface *s) {
     struct bsdf_sample b = {.lobe = 0};
-    world_surface(w->ctx->world, &w->ray, hit, &s);
     if (w->from.depth > 0 || !w->p->hide_emitters)
-        vertex_add_emission(w->ctx, w->index, &s, w->ray.d, throughput(w), &w->from);
-    const vec3 wo = to_local(&s.point.frame, -w->ray.d);
-    const struct closure *closure = response_resolve(w->ctx, w->index, w->from.depth, &s, wo);
+        vertex_add_emission(w->ctx, w->index, s, w->ray.d, throughput(w), &w->from);
+    const vec3 wo = to_local(&s->point.frame, -w->ray.d);
+    const struct closure *closure = response_resolve(w->ctx, w->index, w->from.depth, s, wo);
     const bool goes_on = closure && may_scatter(w, w->from.depth) &&
-                         (!w->p->strict_normals || same_side(&s, -w->ray.d, wo));
-    const vec3 side = goes_on ? vertex_light_side(&s, closure, wo) : v3(0, 0, 0);
+                         (!w->p->strict_normals || same_side(s, -w->ray.d, wo));
+    const vec3 side = goes_on ? vertex_light_side(s, closure, wo) : v3(0, 0, 0);
     if (goes_on && closure->lobes & LOBE_SMOOTH && may_scatter(w, w->from.depth + 1))
-        sample_light_from_surface(w, &s, side, closure);
+        sample_light_from_surface(w, s, side, closure);
     bool sampled = false;
     if (goes_on) {
         const float lobe = sampler_1d(draw(w, DRAW_LOBE));
         sampled = closure_sample(closure, lobe, sampler_2d(draw(w, DRAW_DIRECTION)), &b);
     }
     if (!w->first_done && !(b.lobe & LOBE_NULL))
-        first_event(w, &s, closure);
+        first_event(w, s, closure);
     w->alive = false;
     if (sampled && b.lobe & LOBE_NULL) {
         w->flight.beta *= b.weight;
-        w->passed += s.t;
-        leave_surface(w, &s, w->ray.d);
+        w->passed += s->t;
+        leave_surface(w, s, w->ray.d);
     } else if (sampled && may_scatter(w, w->from.depth + 1)) {
-        scatter_at_surface(w, &s, side, &b);
+        scatter_at_surface(w, s, side, &b);
     }
     w->surfaces++;
 }
 
+static void shade(struct walker *w, const struct accel_hit *hit) {
+    struct surface s;
+    world_surface(w->ctx->world, &w->ray, hit, &s);
+    shade_surface(w, &s);
+}
+
 // ---- paths --------------------------------------------------------------------------------------
+
+static void begin_event(struct walker *w) {
+    w->rng.state = hash_u64(((uint64_t)w->sampler.seed << 32 | w->sampler.index) ^
+                            hash_u64(w->events));
+}
 
 static void step(struct walker *w) {
     const struct medium *m = medium_of(w, w->medium);
@@ -297,8 +307,7 @@ static void step(struct walker *w) {
     const float clip = w->ray.tmax; // of the sensor
     float t = INFINITY;
     w->ctx->rays++;
-    w->rng.state = hash_u64(((uint64_t)w->sampler.seed << 32 | w->sampler.index) ^
-                            hash_u64(w->events));
+    begin_event(w);
     if (m && m->plain) {
         t = medium_free_path(m, sampler_1d(draw(w, DRAW_DISTANCE)), &w->rng);
         w->ray.tmax = minf(clip, t + 2 * slack(w, t));
@@ -352,7 +361,13 @@ void volume_path_trace(const void *data, struct trace_context *ctx,
                        const struct path_start starts[SINK_LANES]) {
     for (int i = 0; i < SINK_LANES; i++) {
         struct walker w = {.p = data, .ctx = ctx, .index = i};
-        for (start(&w, &starts[i]); w.alive; w.events++) {
+        start(&w, &starts[i]);
+        if (w.alive && starts[i].surface) {
+            begin_event(&w);
+            shade_surface(&w, starts[i].surface);
+            w.events++;
+        }
+        for (; w.alive; w.events++) {
             step(&w);
             if (w.alive && (w.surfaces >= INTEGRATOR_MOST_EVENTS || w.events >= MOST_SCATTERINGS)) {
                 w.alive = false;

@@ -164,7 +164,8 @@ bool shape_read(struct reader *r, struct xml_node *node, struct id_entry *entry)
 bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape);
 // Reads the mesh files of all shapes, recentres the scene and brings vertices into the world.
 bool meshes_load(struct reader *r);
-bool sensor_read(struct reader *r, struct xml_node *node);
+// shape: the one it stands in, or SCENE_NONE.
+bool sensor_read(struct reader *r, struct xml_node *node, uint32_t shape);
 bool integrator_read(struct reader *r, struct xml_node *node);
 // An integrator inside another. NULL after an error message.
 struct object *integrator_make(struct reader *r, struct xml_node *node);

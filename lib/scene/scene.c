@@ -45,7 +45,7 @@ static bool read_child(struct reader *r, struct xml_node *child) {
     if (strcmp(target->tag, "texture") == 0 && !spectrum_is_type(xml_get(target, "type")))
         return object_shared(r, registries->textures, &r->textures, target, entry);
     if (strcmp(target->tag, "sensor") == 0)
-        return sensor_read(r, target);
+        return sensor_read(r, target, SCENE_NONE);
     if (strcmp(target->tag, "integrator") == 0)
         return integrator_read(r, target);
     if (strcmp(target->tag, "medium") == 0)
@@ -126,7 +126,7 @@ struct scene *scene_read(const char *path, const struct scene_options *options) 
     struct scene *s = mem_array(1, sizeof *s);
     struct reader r = {.options = options, .scene = s, .arena = &s->arena};
     s->path = arena_strdup(&s->arena, path);
-    s->sensor_medium = SCENE_NONE;
+    s->sensor_medium = s->sensor_shape = SCENE_NONE;
     struct xml_node *root = format->tree(&r, s->path);
     const bool ok = root && read_tree(&r, root);
     if (ok)

@@ -83,6 +83,7 @@ struct scene {
     uint32_t sensor_count;
     struct film_settings film;    // of the sensor that is rendered
     uint32_t sensor_medium;       // index of the medium that sensor stands in, or SCENE_NONE
+    uint32_t sensor_shape;        // index of the shape that sensor stands in, or SCENE_NONE
     struct object *filter;        // of that sensor's film
     struct object *sampler;       // of that sensor
     int sample_count;             // spp asked by the file; 0: none
@@ -111,6 +112,7 @@ struct scene_options {
     const char *sampler;    // replaces the file's; or NULL
     int width, height;      // replaces the file's; 0: keep
     int threads;            // 0: default
+    bool sensorless;        // a file without a sensor gets one, in place of an error
     bool lenient;           // unknown parameters warn instead of failing
 };
 

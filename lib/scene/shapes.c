@@ -87,7 +87,7 @@ const struct param *scene_mesh_params(const struct entry *format) {
 struct contents {
     const struct object *bsdf;
     struct xml_node *emitter;
-    struct id_entry *emitter_entry;
+    struct xml_node *sensor;
     uint32_t group; // of an instance
     uint32_t interior, exterior; // media
 };
@@ -138,13 +138,17 @@ static bool shape_child(struct reader *r, struct xml_node *child, struct xml_nod
     }
     if (strcmp(target->tag, "medium") == 0)
         return shape_medium(r, child, target, entry, c);
-    if (strcmp(target->tag, "emitter") != 0)
+    const bool is_sensor = strcmp(target->tag, "sensor") == 0;
+    if (!is_sensor && strcmp(target->tag, "emitter") != 0)
         return refuse(child, target);
-    if (c->emitter) {
-        log_error_at(child->at, "a second emitter in one shape");
+    struct xml_node **held = is_sensor ? &c->sensor : &c->emitter;
+    if (*held) {
+        log_error_at(child->at, "a second %s in one shape", target->tag);
         return false;
     }
-    c->emitter = target;
+    *held = target;
+    if (is_sensor)
+        return true;
     if (entry)
         entry->state = ID_DONE; // it has a shape: not an emitter of its own
     return true;
@@ -305,6 +309,17 @@ static void take_made(struct reader *r, int index, struct mesh *m) {
     *made = (struct mesh){0};
 }
 
+// A sensor in a shape looks from its surface, through the medium before it.
+static bool meter_read(struct reader *r, struct xml_node *node, uint32_t shape) {
+    const bool first = r->sensors.count == 0;
+    if (!sensor_read(r, node, shape))
+        return false;
+    const uint32_t medium = LIST_AT(&r->shapes, struct shape, shape).exterior;
+    if (first && medium != SCENE_NONE)
+        r->scene->sensor_medium = medium;
+    return true;
+}
+
 static bool make_shape(struct reader *r, struct xml_node *node, int type,
                        const struct entry *mesh_reader, uint32_t group) {
     const struct entry *e = type == MESH
@@ -334,8 +349,11 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
         return false;
     if (!s->bsdf)
         s->bsdf = default_bsdf(r, default_kind(node, &contents), node->at);
-    if (!s->bsdf || !contents.emitter)
-        return s->bsdf != NULL;
+    if (!s->bsdf || (contents.sensor && !meter_read(r, contents.sensor, index)))
+        return false;
+    s = &LIST_AT(&r->shapes, struct shape, index);
+    if (!contents.emitter)
+        return true;
     if (group != SCENE_NONE) {
         log_error_at(contents.emitter->at, "an emitter in a shapegroup: instances cannot emit");
         return false;

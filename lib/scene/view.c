@@ -177,8 +177,10 @@ static bool sensor_child(struct reader *r, struct xml_node *child, struct xml_no
     return is_film ? film_read(r, target, parts->first) : sampler_read(r, target, parts->first);
 }
 
-bool sensor_read(struct reader *r, struct xml_node *node) {
+bool sensor_read(struct reader *r, struct xml_node *node, uint32_t shape) {
     struct sensor_parts parts = {.first = r->sensors.count == 0};
+    if (parts.first)
+        r->scene->sensor_shape = shape;
     struct object *o =
         object_make(r, r->options->registries.sensors, node, sensor_child, &parts);
     if (!o)
@@ -294,6 +296,9 @@ static struct xml_node *default_node(struct reader *r, const char *tag, const ch
 
 bool view_defaults(struct reader *r) {
     struct scene *s = r->scene;
+    if (r->sensors.count == 0 && r->options->sensorless &&
+        !sensor_read(r, default_node(r, "sensor", "perspective"), SCENE_NONE))
+        return false;
     if (r->sensors.count == 0) {
         log_error("%s: the scene has no sensor", s->path);
         return false;

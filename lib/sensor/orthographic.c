@@ -15,13 +15,14 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-static bool prepare(struct object *self, int width, int height, const double centre[3]) {
+static bool prepare(struct object *self, const struct sensor_scene *scene) {
     struct orthographic *o = self->data;
     struct transform m;
-    if (!projective_prepare(self, &o->projective, centre, &m))
+    if (!projective_prepare(self, &o->projective, scene->centre, &m))
         return false;
     const double no_offset[2] = {0, 0};
-    o->film = film_plane_make(&m, width, height, 1, o->projective.near_clip, no_offset, true);
+    o->film = film_plane_make(&m, scene->width, scene->height, 1, o->projective.near_clip, no_offset,
+                              true);
     const vec3 z = affine_from(&m).z;
     o->direction = normalize(z);
     o->depth = (o->projective.far_clip - o->projective.near_clip) * length(z);

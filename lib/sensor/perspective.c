@@ -22,14 +22,15 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-static bool prepare(struct object *self, int width, int height, const double centre[3]) {
+static bool prepare(struct object *self, const struct sensor_scene *scene) {
     struct perspective *p = self->data;
-    const double half = field_of_view_half_width(self, &p->view, (double)width / height);
+    const double aspect = (double)scene->width / scene->height;
+    const double half = field_of_view_half_width(self, &p->view, aspect);
     struct transform m;
-    if (!(half > 0) || !projective_prepare(self, &p->projective, centre, &m))
+    if (!(half > 0) || !projective_prepare(self, &p->projective, scene->centre, &m))
         return false;
     const double offset[2] = {p->offset_x, p->offset_y};
-    p->film = film_plane_make(&m, width, height, half, 1, offset, false);
+    p->film = film_plane_make(&m, scene->width, scene->height, half, 1, offset, false);
     p->origin = affine_from(&m).o;
     return true;
 }

@@ -25,14 +25,16 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-static bool prepare(struct object *self, int width, int height, const double centre[3]) {
+static bool prepare(struct object *self, const struct sensor_scene *scene) {
     struct thinlens *t = self->data;
-    const double half = field_of_view_half_width(self, &t->view, (double)width / height);
+    const double aspect = (double)scene->width / scene->height;
+    const double half = field_of_view_half_width(self, &t->view, aspect);
     struct transform m;
-    if (!(half > 0) || !projective_prepare(self, &t->projective, centre, &m))
+    if (!(half > 0) || !projective_prepare(self, &t->projective, scene->centre, &m))
         return false;
     const struct affine a = affine_from(&m);
-    t->film = film_plane_make(&m, width, height, half, 1, (const double[2]){0, 0}, false);
+    const double no_offset[2] = {0, 0};
+    t->film = film_plane_make(&m, scene->width, scene->height, half, 1, no_offset, false);
     t->origin = a.o;
     t->lens_x = a.x * t->aperture_radius;
     t->lens_y = a.y * t->aperture_radius;

@@ -31,7 +31,7 @@ static struct ray shoot(const struct object *o, float x, float y, struct vec2 u)
 }
 
 static bool prepare(struct object *o) {
-    return sensor_type_of(o)->prepare(o, WIDTH, HEIGHT, origin);
+    return sensor_type_of(o)->prepare(o, &(struct sensor_scene){.width = WIDTH, .height = HEIGHT});
 }
 
 // The tangent of half the horizontal field of view that a camera really has, from its corner rays.
@@ -112,9 +112,9 @@ static void check_clipping(void) {
 // Far away, what is subtracted in double leaves no error.
 static void check_recentring(void) {
     const struct transform far = transform_translate(1e6 + 0.125, -3e6, 7e6 + 0.5);
-    const double centre[3] = {1e6, -3e6, 7e6};
     struct object *o = make_sensor("perspective", "fov=40", &far);
-    CHECK(sensor_type_of(o)->prepare(o, WIDTH, HEIGHT, centre));
+    const struct sensor_scene scene = {WIDTH, HEIGHT, {1e6, -3e6, 7e6}, NULL, NULL};
+    CHECK(sensor_type_of(o)->prepare(o, &scene));
     const struct ray r = shoot(o, 1, 2, (struct vec2){0, 0});
     CHECK(r.o[0] == 0.125f && r.o[1] == 0 && r.o[2] == 0.5f);
 }

@@ -70,7 +70,7 @@ static void trace(const struct job *job, const struct response *response, struct
                                 .stack = &stack, .lanes = LANES};
     accel_thread_init();
     for (uint32_t k = 0; k < SAMPLES; k++) {
-        struct path_start starts[LANES];
+        struct path_start starts[LANES] = {0};
         for (uint32_t i = 0; i < LANES; i++) {
             const uint32_t x = i % 16, y = i / 16;
             starts[i].sampler = sampler_start(job->render.tracer.sampler, x, y, k, SAMPLES, 1, 7);

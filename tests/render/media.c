@@ -163,7 +163,7 @@ static void test_dense(void) {
                                 .sink = &sum.sink, .stack = &stack};
     uint64_t longest = 0, steps = 0;
     for (int i = 0; i < paths; i++) {
-        struct path_start starts[SINK_LANES];
+        struct path_start starts[SINK_LANES] = {0};
         for (int k = 0; k < SINK_LANES; k++) { // the first meets the ball, the others leave at once
             starts[k].ray = (struct ray){v3(0.5f, 0.2f, -5), v3(0, 0, k ? -1 : 1), 0, INFINITY};
             starts[k].sampler = sampler_start(&sampler_independent, 0, 0, (uint32_t)i,

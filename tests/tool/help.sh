@@ -66,7 +66,7 @@ put() {
     spectrum) scene lights="<emitter type=\"constant\">${xml/<spectrum /<spectrum name=\"radiance\" }</emitter>" ;;
     shape | mesh) scene shapes="$xml" ;;
     light) scene lights="$xml" ;;
-    sensor) scene sensor="$xml" ;;
+    sensor) scene sensor="$xml" integrator="<integrator type=\"path\"/>" ;;
     film) scene film="$xml" ;;
     filter | sampler)
         scene sensor="<sensor type=\"perspective\"><float name=\"fov\" value=\"40\"/>
@@ -92,6 +92,7 @@ fill() {
         xml="<shape type=\"shapegroup\" id=\"g\"><shape type=\"sphere\"/></shape>
             ${xml/<\/shape>/<ref id=\"g\"\/><\/shape>}"
         ;;
+    sensor/irradiancemeter) xml="<shape type=\"rectangle\">$xml</shape>" ;;
     light/area) xml="<shape type=\"sphere\">$xml</shape>" ;;
     bsdf/merl) xml=${xml//FILE/$materials/table.binary} ;;
     bsdf/measured) xml=${xml//FILE/$materials/film.bsdf} ;;
