@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
-#include "image/image.h"
+#include "image/lettering.h"
 #include "math/colour.h"
 
 void chart_begin_line(struct chart *c, unsigned colour, float width) {
@@ -100,24 +100,6 @@ static void draw_segment(struct image *im, const float *a, unsigned colour, floa
         }
 }
 
-// Digits of 3 x 5 pixels, a row three bits, twice as large on the picture.
-static void draw_label(struct image *im, const struct chart_label *l) {
-    static const char known[] = "0123456789.-";
-    static const unsigned glyphs[] = {075557, 026227, 071747, 071717, 055711, 074717,
-                                      074757, 071111, 075757, 075717, 000002, 000700};
-    int left = (int)l->x;
-    for (const char *t = l->text; *t; t++, left += 8) {
-        const char *at = strchr(known, *t);
-        for (int bit = 0; at && bit < 60; bit++) {
-            const int row = bit / 6 / 2, column = bit % 6 / 2;
-            const int x = left + bit % 6, y = (int)l->y - 10 + bit / 6;
-            if (glyphs[at - known] >> (14 - 3 * row - column) & 1 && x >= 0 && y >= 0 &&
-                x < im->width && y < im->height)
-                blend(im, x, y, 0, 1);
-        }
-    }
-}
-
 static bool write_png(const struct chart *c, const char *path) {
     struct image im;
     if (!image_init(&im, c->width, c->height, 3))
@@ -128,7 +110,8 @@ static bool write_png(const struct chart *c, const char *path) {
         for (size_t k = 0; k + 1 < c->lines[i].count; k++)
             draw_segment(&im, c->lines[i].points + 2 * k, c->lines[i].colour, c->lines[i].width);
     for (size_t i = 0; i < c->label_count; i++)
-        draw_label(&im, &c->labels[i]);
+        lettering_draw(&im, (int)c->labels[i].x, (int)c->labels[i].y - 10, c->labels[i].text,
+                       (const float[3]){0, 0, 0});
     const bool good = image_write_png(path, &im);
     image_finish(&im);
     return good;

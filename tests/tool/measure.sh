@@ -23,7 +23,8 @@ while IFS= read -r line; do
     echo "$line" >&"${METER[1]}"
     [[ $line =~ ^(#.*)?$ ]] || { read -r -t 60 answer <&"${METER[0]}" || fail "no answer to $line"; one_by_one+=$answer$'\n'; }
 done <<<"$points"
-exec {METER[1]}>&-
+input=${METER[1]}
+exec {input}>&-
 at_once=$("$relume" measure "$sky" --quiet --threads 1 <<<"$points")
 [ "$one_by_one" = "$at_once"$'\n' ] || fail "one by one: $one_by_one at once: $at_once"
 [ "$(wc -l <<<"$at_once")" -eq 4 ] || fail "not four lines: $at_once"

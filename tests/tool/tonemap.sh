@@ -30,6 +30,35 @@ near "$out" width 5
 near "$out" height 7
 near "$out" bits 8
 
+# A logarithmic scale: 0.5 of 0.05 to 5 is its middle, between #23888e and #1f988b; beside it a legend.
+shows_middle() {
+    expect 0 "$relume" tonemap "$half" -o "$png" "$@"
+    expect 0 "$relume" info "$png" --json
+    near "$out" width 101
+    near "$out" height 96
+    python3 - "$png" <<'END' || fail "false colour: wrong pixel for $*"
+import struct, sys, zlib
+data = open(sys.argv[1], "rb").read()
+at, packed = 8, b""
+while at < len(data):
+    size, kind = struct.unpack(">I4s", data[at:at + 8])
+    packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+    at += size + 12
+rows = zlib.decompress(packed)
+filters = {rows[y * (1 + 3 * 101)] for y in range(1)}
+assert filters <= {0, 1}, filters
+pixel = rows[1:4]
+print(list(pixel))
+sys.exit(any(abs(a - b) > 1 for a, b in zip(pixel, (0x21, 0x90, 0x8d))))
+END
+}
+shows_middle --false-colour plain --range 0.05:5
+shows_middle --false-colour cd/m2 --range 34.15:3415
+shows_middle --false-colour lux --efficacy 200 --range 0:200 --linear
+expect 0 "$relume" tonemap "$half" -o "$png" --false-colour lux
+expect 1 "$relume" tonemap "$half" -o "$png" --false-colour lux --range 0:5
+contains "$err" "LOW:HIGH"
+
 expect 0 "$relume" info "$half" --json
 near "$out" channels.1.mean 0.5
 near "$out" bits 32
