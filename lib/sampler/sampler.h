@@ -16,6 +16,8 @@
 
 struct sampler {
     const struct sampler_type *type;
+    uint32_t picture;   // seed of this replicate, the same for all pixels
+    uint32_t pixel;     // x in the lower half, y in the upper
     uint32_t seed;      // of this pixel and replicate
     uint32_t index;     // point number inside the replicate
     uint32_t count;     // points a replicate will have in all (stratified kinds need it); >= 1
@@ -71,7 +73,8 @@ static inline struct sampler sampler_start(const struct sampler_type *type, uint
     const uint32_t h = hash_combine(hash_combine(hash_combine(picture, x), y), replicate);
     const uint32_t count = (spp + replicates - 1) / replicates;
     const uint32_t index = sample / replicates;
-    return (struct sampler){type, h, index, count ? count : 1, 0, reverse_bits(index)};
+    return (struct sampler){type, picture + replicate * 0x9e3779b9u, (x & 0xffff) | y << 16, h, index,
+                            count ? count : 1, 0, reverse_bits(index)};
 }
 
 static inline float sampler_1d(struct sampler *s) {

@@ -2,11 +2,10 @@
 // Owen-scrambled Sobol points: every 2-D draw is a (0,2)-sequence of its own, with its own order of
 // the points, so that any number of dimensions can be padded together (Burley 2020, Practical
 // Hash-based Owen Scrambling, JCGT 9(4)).
-//
-// A nested uniform (Owen) scramble flips each bit by a function of the bits above it. On reversed
-// bits this is a mixer in which information only moves upwards: multiplications by even numbers,
-// xor and addition (Laine and Karras 2011; constants by Vegdahl 2021, Building a Better LK Hash).
-// All words below are kept reversed where that saves a reversal.
+// Any aligned block of 2^k points of a draw is a (0,2)-net, as of progressive multi-jittered (0,2)
+// sequences (Christensen, Kensler, Kilpatrick 2018), which this therefore also stands for. All words
+// below are kept reversed where that saves a reversal (sampler/owen.h).
+#include "sampler/owen.h"
 #include "sampler/sampler.h"
 
 static const struct param params[] = {
@@ -16,7 +15,8 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-static const char *const aliases[] = {"ldsampler", "halton", "hammersley", "orthogonal", NULL};
+static const char *const aliases[] = {"ldsampler", "halton", "hammersley", "orthogonal", "pmj02",
+                                      "pmj02bn", NULL};
 
 // Two words at once; they change places.
 static uint64_t reverse_both(uint64_t x) {
@@ -24,27 +24,6 @@ static uint64_t reverse_both(uint64_t x) {
     x = (x >> 4 & 0x0f0f0f0f0f0f0f0fu) | (x & 0x0f0f0f0f0f0f0f0fu) << 4;
     x = (x >> 2 & 0x3333333333333333u) | (x & 0x3333333333333333u) << 2;
     return (x >> 1 & 0x5555555555555555u) | (x & 0x5555555555555555u) << 1;
-}
-
-// Owen scramble of a reversed word.
-static uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= (seed >> 16) | 1;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return x;
-}
-
-// The second Sobol dimension of point `index`, reversed. Its direction numbers are, reversed, the
-// powers of (1 + x) over GF(2), so bit i of index becomes (1 + x)^i: the polynomial index(x) is
-// shifted to index(1 + x), by halves of 16, 8, 4, 2 and 1 since (1 + x)^16 = 1 + x^16.
-static uint32_t second_dimension_reversed(uint32_t index) {
-    index ^= index >> 16;
-    index ^= (index & 0xff00ff00u) >> 8;
-    index ^= (index & 0xf0f0f0f0u) >> 4;
-    index ^= (index & 0xccccccccu) >> 2;
-    return index ^ (index & 0xaaaaaaaau) >> 1;
 }
 
 struct seeds {
@@ -59,21 +38,21 @@ static struct seeds next_seeds(struct sampler *s) {
 
 // This dimension's order of the points: the index is scrambled as if it were a point.
 static uint32_t shuffled_index(const struct sampler *s, uint32_t seed) {
-    return reverse_bits(scramble_reversed(s->reversed, seed));
+    return reverse_bits(owen_scramble_reversed(s->reversed, seed));
 }
 
 static float next_1d(struct sampler *s) {
     const struct seeds k = next_seeds(s);
     const uint32_t index = shuffled_index(s, k.order);
-    return uniform_float(reverse_bits(scramble_reversed(index, k.x)));
+    return uniform_float(reverse_bits(owen_scramble_reversed(index, k.x)));
 }
 
 static struct vec2 next_2d(struct sampler *s) {
     const struct seeds k = next_seeds(s);
     const uint32_t index = shuffled_index(s, k.order);
     // The first dimension is the reversed index, so its reversal is the index itself.
-    const uint32_t x = scramble_reversed(index, k.x);
-    const uint32_t y = scramble_reversed(second_dimension_reversed(index), k.y);
+    const uint32_t x = owen_scramble_reversed(index, k.x);
+    const uint32_t y = owen_scramble_reversed(sobol_second_reversed(index), k.y);
     const uint64_t both = reverse_both((uint64_t)x << 32 | y);
     return (struct vec2){uniform_float((uint32_t)both), uniform_float((uint32_t)(both >> 32))};
 }
@@ -86,30 +65,13 @@ static wide_uint reverse_wide(wide_uint x) {
     return (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
 }
 
-static wide_uint scramble_reversed_wide(wide_uint x, wide_uint seed) {
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= (seed >> 16) | 1;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return x;
-}
-
-static wide_uint second_dimension_reversed_wide(wide_uint index) {
-    index ^= index >> 16;
-    index ^= (index & 0xff00ff00u) >> 8;
-    index ^= (index & 0xf0f0f0f0u) >> 4;
-    index ^= (index & 0xccccccccu) >> 2;
-    return index ^ (index & 0xaaaaaaaau) >> 1;
-}
-
 static void draw_wide(const struct sampler_lanes *s, wide_uint dimension, wide u[2]) {
     const struct wide_u64 a = wide_hash_u64(wide_join(s->seed, dimension));
     const struct wide_u64 b = {a.a * 0xd1342543de82ef95u, a.b * 0xd1342543de82ef95u};
-    const wide_uint index = reverse_wide(scramble_reversed_wide(s->reversed, wide_low_word(a)));
-    const wide_uint x = scramble_reversed_wide(index, wide_high_word(a));
+    const wide_uint index = reverse_wide(owen_scramble_reversed_wide(s->reversed, wide_low_word(a)));
+    const wide_uint x = owen_scramble_reversed_wide(index, wide_high_word(a));
     const wide_uint y =
-        scramble_reversed_wide(second_dimension_reversed_wide(index), wide_high_word(b));
+        owen_scramble_reversed_wide(sobol_second_reversed_wide(index), wide_high_word(b));
     u[0] = wide_uniform_float(reverse_wide(x));
     u[1] = wide_uniform_float(reverse_wide(y));
 }

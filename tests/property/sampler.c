@@ -6,7 +6,10 @@
 //  - the mean of a discontinuous integrand is unbiased for any sample count, 1 and primes included
 //    (z-tests over many seeds);
 //  - replicates and dimensions are uncorrelated, pixels differ;
-//  - the first 2^k Sobol points of every 2-D draw are a (0,2)-net;
+//  - every aligned block of 2^k Sobol points of every 2-D draw is a (0,2)-net (which is what makes a
+//    sequence progressive multi-jittered), and so are those that zsobol deals to an aligned square
+//    of pixels, whose mean is therefore better than that of pixels on their own;
+//  - any 2^k lattice points from a multiple of 2^k on are one in each of 2^k intervals;
 //  - an error against the number of samples, printed.
 // All statistical tests together raise a false alarm with probability 1 % (Sidak), once per choice
 // of seeds.
@@ -153,24 +156,96 @@ static void check_ranges(const struct sampler_type *type) {
         }
 }
 
-// Every elementary interval of area 2^-k holds one of the first 2^k points.
-static void check_net(int k, int draw) {
+// Every elementary interval of area 2^-k holds one of 2^k points.
+static void check_is_net(const struct vec2 *points, int k) {
     const uint32_t n = 1u << k;
+    unsigned char *hit = malloc(n);
     for (int kx = 0; kx <= k; kx++) {
-        unsigned char *hit = calloc(n, 1);
+        memset(hit, 0, n);
         for (uint32_t i = 0; i < n; i++) {
-            struct sampler s = sampler_start(&sampler_sobol, 5, 6, i, n, 1, 7);
-            for (int d = 0; d < draw; d++)
-                sampler_2d(&s);
-            const struct vec2 v = sampler_2d(&s);
-            const uint32_t x = (uint32_t)(v.x * (float)(1u << kx));
-            const uint32_t y = (uint32_t)(v.y * (float)(1u << (k - kx)));
+            const uint32_t x = (uint32_t)(points[i].x * (float)(1u << kx));
+            const uint32_t y = (uint32_t)(points[i].y * (float)(1u << (k - kx)));
             hit[(x << (k - kx)) + y]++;
         }
         for (uint32_t i = 0; i < n; i++)
             CHECK(hit[i] == 1);
-        free(hit);
     }
+    free(hit);
+}
+
+static struct vec2 draw_of(const struct sampler_type *type, uint32_t x, uint32_t y, uint32_t sample,
+                           uint32_t spp, int draw) {
+    struct sampler s = sampler_start(type, x, y, sample, spp, 1, 7);
+    for (int d = 0; d < draw; d++)
+        sampler_2d(&s);
+    return sampler_2d(&s);
+}
+
+// The block of 2^k points that has this number.
+static void check_net(int k, int draw, uint32_t block) {
+    const uint32_t n = 1u << k;
+    struct vec2 *points = malloc(n * sizeof *points);
+    for (uint32_t i = 0; i < n; i++)
+        points[i] = draw_of(&sampler_sobol, 5, 6, block * n + i, n, draw);
+    check_is_net(points, k);
+    free(points);
+}
+
+// All samples of the square of 2^n x 2^n pixels with this place, for 2^k samples a pixel.
+static void check_shared_net(int n, int k, int draw, uint32_t column, uint32_t row) {
+    const uint32_t side = 1u << n, spp = 1u << k;
+    struct vec2 *points = malloc(sizeof *points * side * side * spp), *p = points;
+    for (uint32_t i = 0; i < side * side * spp; i++)
+        *p++ = draw_of(&sampler_zsobol, column * side + i / spp % side, row * side + i / spp / side,
+                       i % spp, spp, draw);
+    check_is_net(points, 2 * n + k);
+    free(points);
+}
+
+// Mean squared error of a square of 4x4 pixels over a sixteenth of a pixel's: 1 where pixels err
+// independently. The figure's own error is some 6 %.
+static double shared_error(const struct sampler_type *type, uint32_t spp) {
+    enum { SIDE = 4, SQUARES = 600 };
+    const double area = M_PI * (double)0.14f;
+    double squares = 0, pixels = 0;
+    for (uint32_t q = 0; q < SQUARES; q++) {
+        double sum = 0;
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            int inside = 0;
+            for (uint32_t k = 0; k < spp; k++) {
+                const struct vec2 v = draw_of(type, q * SIDE + i % SIDE, i / SIDE, k, spp, 1);
+                const float x = v.x - 0.45f, y = v.y - 0.53f;
+                inside += x * x + y * y < 0.14f;
+            }
+            const double error = inside / (double)spp - area;
+            pixels += error * error / (SQUARES * SIDE * SIDE);
+            sum += error / (SIDE * SIDE);
+        }
+        squares += sum * sum / SQUARES;
+    }
+    return squares / (pixels / (SIDE * SIDE));
+}
+
+static void check_shared_error(uint32_t spp) {
+    const double alone = shared_error(&sampler_sobol, spp), z = shared_error(&sampler_zsobol, spp);
+    printf("%u samples: squared error of 4x4 pixels, 1 where they err independently: sobol %.2f, "
+           "zsobol %.2f\n", spp, alone, z);
+    CHECK(fabs(alone - 1) < 0.35 && z < 0.75); // a net of 16 points alone has 0.5 of their error
+}
+
+static void check_lattice(int k, int draw, uint32_t block) {
+    const uint32_t n = 1u << k;
+    unsigned char *hit = calloc(n, 2);
+    for (uint32_t i = 0; i < n; i++) {
+        const struct vec2 v = draw_of(&sampler_lattice, 5, 6, block * n + i, n, draw);
+        const struct vec2 from = draw_of(&sampler_lattice, 5, 6, block * n, n, draw);
+        const float x = v.x - from.x, y = v.y - from.y; // multiples of 1/n, but for rounding
+        hit[2 * ((uint32_t)lrintf((x < 0 ? x + 1 : x) * (float)n) % n)]++;
+        hit[2 * ((uint32_t)lrintf((y < 0 ? y + 1 : y) * (float)n) % n) + 1]++;
+    }
+    for (uint32_t i = 0; i < 2 * n; i++)
+        CHECK(hit[i] == 1);
+    free(hit);
 }
 
 // Multi-jittered points are one in each row, column and cell; stratified ones one in each cell.
@@ -214,8 +289,15 @@ int main(void) {
         print_speed(type);
     }
     for (int k = 0; k <= 12; k++)
-        for (int draw = 0; draw < 4; draw++)
-            check_net(k, draw);
+        for (int draw = 0; draw < 4; draw++) {
+            check_net(k, draw, (uint32_t)draw);
+            check_lattice(k, draw * 21, (uint32_t)draw);
+        }
+    for (int k = 0; k <= 4; k++)
+        for (int n = 0; n <= 3; n++)
+            check_shared_net(n, k, k, 3, 1);
+    check_shared_error(1);
+    check_shared_error(4);
     for (uint32_t m = 1; m <= 16; m++) {
         check_strata(&sampler_stratified, m);
         check_strata(&sampler_multijitter, m);
