@@ -66,10 +66,12 @@ enum bsdf_claim {
     CLAIM_LOSSLESS = 4,     // directional albedo exactly 1 with default colours (smooth dielectric)
 };
 
-// What a material that reflects by Lambert's law is, for those that can shade many points at once.
-struct lambert {
-    const struct texture_ref *reflectance;
-    bool two_sided;
+// A material that can be shaded many points at once (bsdf/bsdf_wide.h), and by whom.
+struct wide_material {
+    const struct wide_bsdf *kind;
+    const void *data; // for the kind
+    bool two_sided;   // the same on the other side, mirrored
+    bool textured;    // it depends on the place
 };
 
 struct bsdf_type {
@@ -84,8 +86,8 @@ struct bsdf_type {
     // The material at a point, seen from wo. NULL: absorbs everything (black), nothing to sample.
     const struct closure *(*resolve)(const void *data, const struct bsdf_point *point, vec3 wo,
                                      struct closure_stack *stack);
-    // Whether it is nothing but Lambert's law, with the bits of eval and sample below. NULL: no.
-    bool (*is_lambert)(const void *data, struct lambert *l);
+    // Whether it can be shaded many points at once; m comes zeroed. NULL: no.
+    bool (*widen)(const void *data, struct wide_material *m);
     // f |cos theta_i| of the non-delta lobes; *pdf_sa is sample's density of this wi.
     spectrum (*eval)(const struct closure *closure, vec3 wi, float *pdf_sa);
     // u1 chooses the lobe, u2 the direction, all in [0,1). false: nothing was scattered.
@@ -124,9 +126,10 @@ static inline const struct closure *bsdf_resolve(const struct object *o,
     return bsdf_type_of(o)->resolve(o->data, point, wo, stack);
 }
 
-static inline bool bsdf_is_lambert(const struct object *o, struct lambert *l) {
+static inline bool bsdf_wide(const struct object *o, struct wide_material *m) {
     const struct bsdf_type *type = bsdf_type_of(o);
-    return type->is_lambert && type->is_lambert(o->data, l);
+    *m = (struct wide_material){0};
+    return type->widen && type->widen(o->data, m);
 }
 
 static inline uint32_t bsdf_lobes(const struct object *o) {

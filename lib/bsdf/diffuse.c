@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lambertian reflection: f = reflectance / pi on the side of the normal.
-#include "bsdf/bsdf.h"
-#include "math/warp.h"
+#include "bsdf/diffuse.h"
 
-struct diffuse {
-    struct texture_ref reflectance;
-};
+#include "math/warp.h"
 
 struct diffuse_closure {
     struct closure head;
@@ -28,14 +25,20 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     const struct diffuse *self = data;
     if (!(cos_theta(wo) > 0))
         return NULL;
+    const spectrum reflectance = texture_eval(&self->reflectance, &point->at);
+    if (spectrum_is_black(reflectance))
+        return NULL;
     struct diffuse_closure *c =
         closure_alloc(stack, &bsdf_diffuse, sizeof *c, LOBE_DIFFUSE | LOBE_REFLECTION);
-    c->reflectance = texture_eval(&self->reflectance, &point->at);
+    c->reflectance = reflectance;
     return &c->head;
 }
 
-static bool is_lambert(const void *data, struct lambert *l) {
-    *l = (struct lambert){&((const struct diffuse *)data)->reflectance, false};
+static bool widen(const void *data, struct wide_material *m) {
+    const struct diffuse *self = data;
+    m->kind = &diffuse_wide;
+    m->data = self;
+    m->textured = self->reflectance.texture != NULL;
     return true;
 }
 
@@ -74,5 +77,6 @@ const struct bsdf_type bsdf_diffuse = {
     .entry = {.name = "diffuse", .help = "ideal diffuse reflection (Lambert 1760)",
               .params = params, .size = sizeof(struct diffuse)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
-    .lobes = lobes, .resolve = resolve, .is_lambert = is_lambert, .eval = eval, .sample = sample, .albedo = albedo,
+    .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample, .albedo = albedo,
+    .widen = widen,
 };

@@ -4,19 +4,10 @@
 // lost, or given back by a broad lobe (bsdf/facet_loss.h) of the colour that light has which meets
 // facets again and again, F1^2 E1 / (1 - F1 (1 - E1)) with the means F1 of F and E1 of what escapes
 // at once.
-#include "bsdf/roughness.h"
-#include "bsdf/smooth.h"
+#include "bsdf/roughconductor.h"
+
 #include "math/fresnel.h"
 #include "math/quadrature.h"
-
-struct roughconductor {
-    struct conductor_index index;
-    struct roughness roughness;
-    struct texture_ref reflectance;
-    int energy;
-    struct facet_loss loss; // made by prepare
-    spectrum mean_fresnel;
-};
 
 struct roughconductor_data {
     struct closure head;
@@ -61,6 +52,7 @@ static bool prepare(struct object *self, struct arena *arena) {
     struct roughconductor *c = self->data;
     if (!conductor_index_prepare(&c->index, self) || !roughness_prepare(&c->roughness, self))
         return false;
+    c->rough = roughness_constant(&c->roughness, &c->facets);
     if (c->energy != ENERGY_COMPENSATED)
         return true;
     const enum microfacet_type type = (enum microfacet_type)c->roughness.distribution;
@@ -71,6 +63,14 @@ static bool prepare(struct object *self, struct arena *arena) {
 static uint32_t lobes(const void *data) {
     const struct roughconductor *self = data;
     return roughness_lobes(&self->roughness) | LOBE_REFLECTION;
+}
+
+static bool widen(const void *data, struct wide_material *m) {
+    const struct roughconductor *self = data;
+    m->kind = &roughconductor_wide[self->roughness.distribution];
+    m->data = self;
+    m->textured = self->reflectance.texture != NULL;
+    return self->rough && self->energy != ENERGY_COMPENSATED;
 }
 
 static void resolve_regained(struct roughconductor_data *c, const struct roughconductor *self) {
@@ -173,5 +173,5 @@ const struct bsdf_type bsdf_roughconductor = {
               .params = params, .size = sizeof(struct roughconductor)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
     .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
-    .albedo = albedo,
+    .albedo = albedo, .widen = widen,
 };

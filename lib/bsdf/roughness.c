@@ -26,6 +26,12 @@ uint32_t roughness_lobes(const struct roughness *r) {
                                                                   : LOBE_SPECULAR;
 }
 
+bool roughness_constant(const struct roughness *r, struct microfacet *m) {
+    const struct texture_point nowhere = {0};
+    return !r->alpha.texture && !r->alpha_u.texture && !r->alpha_v.texture &&
+           roughness_at(r, &nowhere, m);
+}
+
 bool roughness_loss(const struct roughness *r, const struct object *self, facet_albedo_fn albedo,
                     const void *context, struct facet_loss *loss, struct arena *arena) {
     const bool pair = is_given(&r->alpha_u);

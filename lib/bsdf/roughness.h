@@ -36,6 +36,9 @@ uint32_t roughness_lobes(const struct roughness *r);
 bool roughness_loss(const struct roughness *r, const struct object *self, facet_albedo_fn albedo,
                     const void *context, struct facet_loss *loss, struct arena *arena);
 
+// Whether the facets are the same everywhere, and rough; then they are *m.
+bool roughness_constant(const struct roughness *r, struct microfacet *m);
+
 // false: smooth here.
 static inline bool roughness_at(const struct roughness *r, const struct texture_point *at,
                                 struct microfacet *m) {

@@ -54,11 +54,11 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     return &c->head;
 }
 
-static bool is_lambert(const void *data, struct lambert *l) {
+static bool widen(const void *data, struct wide_material *m) {
     const struct twosided *self = data;
-    const bool is = !self->back && bsdf_is_lambert(self->front, l);
-    l->two_sided = true;
-    return is;
+    const bool can = !self->back && bsdf_wide(self->front, m);
+    m->two_sided = true;
+    return can;
 }
 
 static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
@@ -90,6 +90,6 @@ const struct bsdf_type bsdf_twosided = {
     .entry = {.name = "twosided", .help = "one-sided materials on both sides", .params = params,
               .size = sizeof(struct twosided)},
     .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
-    .prepare = prepare, .lobes = lobes, .resolve = resolve, .is_lambert = is_lambert,
-    .eval = eval, .sample = sample, .albedo = albedo, .inside = inside,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
+    .albedo = albedo, .widen = widen, .inside = inside,
 };

@@ -6,6 +6,8 @@
 // run side by side, of the camera and the first shadow rays, and all where a scene is small.
 #include "integrator/path.h"
 
+#include <string.h>
+
 static const struct param params[] = {
     {"max_depth", PARAM_INT, offsetof(struct path, max_depth), .def = "-1", .min = -1, .max = 1e6,
      .unit = "", .help = "most edges of a path: 1 sees emitters, 2 adds direct light; -1: no limit"},
@@ -238,32 +240,51 @@ static void find_hits(struct trace_context *ctx, const struct lane *lanes, const
         accel_intersect(accel, &lanes[p->lanes[i]].ray, &hits[p->lanes[i]]);
 }
 
+// Lanes by the kind of their material; 0: those that are shaded one by one.
+struct kinds {
+    uint32_t count[WORLD_MOST_WIDE_KINDS];
+    uint16_t lanes[WORLD_MOST_WIDE_KINDS][MOST_LANES];
+};
+
+static void add_lane(struct kinds *k, uint32_t kind, uint16_t lane) {
+    k->lanes[kind][k->count[kind]++] = lane;
+}
+
+static void shade_kind(const struct path *p, struct trace_context *ctx, struct wave *w,
+                       const struct accel_hit *hits, uint32_t kind, struct kinds *k) {
+    const uint32_t count = k->count[kind];
+    const uint16_t *list = k->lanes[kind];
+    uint32_t done = 0;
+    while (count - done >= LEAST_IN_PACKET) {
+        const uint32_t left = count - done;
+        const struct packet group = {list + done, left < SINK_LANES ? (int)left : SINK_LANES};
+        path_shade_wide(p, ctx, w->lanes, &group, hits);
+        done += (uint32_t)group.count;
+    }
+    while (done < count)
+        add_lane(k, 0, list[done++]);
+}
+
 // What comes of a vertex does not depend on other lanes, so those that shade alike go together.
 static void shade_all(const struct path *p, struct trace_context *ctx, struct wave *w,
                       const struct accel_hit *hits) {
-    uint16_t lambert[MOST_LANES], others[MOST_LANES];
-    uint32_t alike = 0, rest = 0, done = 0;
+    struct kinds kinds;
+    memset(kinds.count, 0, sizeof kinds.count);
     for (uint32_t k = 0; k < w->count; k++) {
         const uint16_t i = w->alive[k];
         struct lane *l = &w->lanes[i];
         l->shadow.pending = false;
         if (hits[i].shape == SCENE_NONE)
             leave_scene(p, ctx, i, l);
-        else if (path_is_lambert(ctx, l, &hits[i]))
-            lambert[alike++] = i;
         else
-            others[rest++] = i;
+            add_lane(&kinds, path_wide_kind(ctx, l, &hits[i]), i);
     }
-    while (alike - done >= LEAST_IN_PACKET) {
-        const uint32_t left = alike - done;
-        const struct packet group = {lambert + done, left < SINK_LANES ? (int)left : SINK_LANES};
-        path_shade_lambert(p, ctx, w->lanes, &group, hits);
-        done += (uint32_t)group.count;
+    for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
+        shade_kind(p, ctx, w, hits, kind, &kinds);
+    for (uint32_t k = 0; k < kinds.count[0]; k++) {
+        const uint16_t i = kinds.lanes[0][k];
+        shade(p, ctx, i, &w->lanes[i], &hits[i]);
     }
-    while (done < alike)
-        others[rest++] = lambert[done++];
-    for (uint32_t k = 0; k < rest; k++)
-        shade(p, ctx, others[k], &w->lanes[others[k]], &hits[others[k]]);
 }
 
 // Drops the lanes that have ended at a vertex, after the shadow rays of all.

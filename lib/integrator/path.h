@@ -48,14 +48,16 @@ static inline bool path_may_contribute(const struct path *p, uint32_t edges) {
     return p->max_depth < 0 || edges < (uint32_t)p->max_depth;
 }
 
-// Whether path_shade_lambert can shade a hit.
-static inline bool path_is_lambert(const struct trace_context *ctx, const struct lane *l,
-                                   const struct accel_hit *hit) {
-    return ctx->world->shapes[hit->shape].reflectance && !ctx->world->tangents_matter &&
-           ctx->response == &response_physical && (l->first_done || !ctx->sink->wants_surface);
+// The kind of material by which path_shade_wide can shade a hit; 0: it cannot.
+static inline uint32_t path_wide_kind(const struct trace_context *ctx, const struct lane *l,
+                                      const struct accel_hit *hit) {
+    const bool physical = ctx->response == &response_physical;
+    return physical && (l->first_done || !ctx->sink->wants_surface)
+               ? ctx->world->shapes[hit->shape].wide_kind
+               : 0;
 }
 
-// One vertex of a packet's lanes, which all met Lambertian triangles: the same as one by one, with
-// the same bits. hits: by lane.
-void path_shade_lambert(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                        const struct packet *packet, const struct accel_hit *hits);
+// One vertex of a packet's lanes, whose materials are of one kind: the same as one by one, with the
+// same bits. hits: by lane.
+void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
+                     const struct packet *packet, const struct accel_hit *hits);

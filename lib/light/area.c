@@ -95,14 +95,16 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
 
 static bool has_wide(const void *data) {
     const struct area *a = data;
-    return a->is_mesh && a->mesh.kind == POLYGON_RECTANGLE && !a->radiance.texture;
+    return !a->radiance.texture && (a->is_mesh ? a->mesh.kind == POLYGON_RECTANGLE
+                                               : area_quadric_is_wide(&a->quadric));
 }
 
 static wide_mask sample_wide(const void *data, const struct wide3 *p, const wide u[2],
                              struct light_samples *s) {
     const struct area *a = data;
     s->emission = a->radiance.value;
-    return area_rectangle_sample_wide(&a->mesh, p, u, s);
+    return a->is_mesh ? area_rectangle_sample_wide(&a->mesh, p, u, s)
+                      : area_sphere_sample_wide(&a->quadric, p, u, s);
 }
 
 static spectrum emission(const void *data, const struct light_hit *hit) {

@@ -6,6 +6,7 @@
 #include "math/elementary.h"
 #include "math/frame.h"
 #include "math/warp.h"
+#include "math/wide_maps.h"
 #include "scene/quadric.h"
 
 static vec3 object_normal(enum shape_kind kind, vec3 p) {
@@ -207,6 +208,52 @@ static float sphere_pdf_sa(const struct area_quadric *q, vec3 p) {
     if (side == DARK)
         return 0;
     return side == INSIDE ? 1 / (4 * PI) : cone_pdf(q->radius * q->radius / d2);
+}
+
+// ---- sixteen lit points outside of a round sphere that emits outwards: the operations above, lane by
+// lane
+
+bool area_quadric_is_wide(const struct area_quadric *q) {
+    return q->round && q->uniform && !q->flip;
+}
+
+static wide safe_sqrt_wide(wide x) {
+    return wide_sqrt(wide_max(x, wide_of(0)));
+}
+
+static wide cone_height_wide(wide sin2_max) {
+    return sin2_max / (1 + safe_sqrt_wide(1 - sin2_max));
+}
+
+static struct wide3 seen_point_wide(struct wide3 axis, wide sin2_max, const wide u[2]) {
+    const wide t = u[0] * cone_height_wide(sin2_max);
+    const wide sin2 = t * (2 - t);
+    const wide cos_alpha =
+        sin2 / wide_sqrt(sin2_max) + (1 - t) * safe_sqrt_wide(1 - sin2 / sin2_max);
+    const wide sin_alpha = safe_sqrt_wide(1 - cos_alpha * cos_alpha);
+    const struct wide_frame f = wide_frame_from_normal(axis);
+    wide sin_phi, cos_phi;
+    wide_sincos_turn(u[1], &sin_phi, &cos_phi);
+    return wide_to_world(&f, (struct wide3){sin_alpha * cos_phi, sin_alpha * sin_phi,
+                                            wide_min(cos_alpha, wide_of(1))});
+}
+
+wide_mask area_sphere_sample_wide(const struct area_quadric *q, const struct wide3 *p,
+                                  const wide u[2], struct light_samples *s) {
+    const struct wide3 centre = wide3_of(q->centre), o = wide3_sub(*p, centre);
+    const wide d2 = wide_dot(o, o);
+    const float r2 = q->radius * q->radius;
+    const wide sin2_max = r2 / d2;
+    s->n = seen_point_wide(wide_normalize(o), sin2_max, u);
+    const struct wide3 from_centre = wide3_scale(wide_of(q->radius), s->n);
+    s->p = wide3_add(centre, from_centre);
+    s->p_error = wide3_scale(wide_of(4 * 0x1p-23f),
+                             wide3_add(wide3_abs(from_centre), wide3_abs(centre)));
+    const struct wide3 d = wide3_sub(s->p, *p);
+    s->wi = wide_normalize(d);
+    s->distance = wide_sqrt(wide_dot(d, d));
+    s->pdf_sa = 1 / (TWO_PI * cone_height_wide(sin2_max));
+    return (d2 > r2) & (s->distance > 0);
 }
 
 bool area_quadric_sample(const struct area_quadric *q, vec3 p, struct vec2 u,

@@ -69,6 +69,10 @@ struct area_quadric {
 bool area_quadric_init(struct area_quadric *q, const struct shape *shape);
 bool area_quadric_sample(const struct area_quadric *q, vec3 p, struct vec2 u,
                          struct light_sample *s, struct texture_point *at);
+// The same for sixteen lit points, of a sphere that is_wide.
+bool area_quadric_is_wide(const struct area_quadric *q);
+wide_mask area_sphere_sample_wide(const struct area_quadric *q, const struct wide3 *p,
+                                  const wide u[2], struct light_samples *s);
 float area_quadric_pdf_sa(const struct area_quadric *q, vec3 p, const struct light_hit *hit);
 
 // For radiance 1.

@@ -7,6 +7,13 @@
 #include "math/fresnel.h"
 #include "math/quadrature.h"
 
+const float erf_inverse_middle[9] = {
+    1.50140941f,     0.246640727f,     -0.00417768164f, -0.00125372503f, 0.00021858087f,
+    -4.39150654e-06f, -3.5233877e-06f, 3.43273939e-07f, 2.81022636e-08f};
+const float erf_inverse_tail[9] = {
+    2.83297682f,     1.00167406f,    0.00943887047f,  -0.0076224613f, 0.00573950773f,
+    -0.00367342844f, 0.00134934322f, 0.000100950558f, -0.000200214257f};
+
 // c[0] + c[1] w + ... + c[8] w^8 by Estrin's scheme
 static float polynomial8(const float c[9], float w) {
     const float w2 = w * w, w4 = w2 * w2;
@@ -15,16 +22,10 @@ static float polynomial8(const float c[9], float w) {
 }
 
 float erf_inverse(float x) {
-    static const float middle[9] = {1.50140941f,     0.246640727f,     -0.00417768164f,
-                                    -0.00125372503f, 0.00021858087f,   -4.39150654e-06f,
-                                    -3.5233877e-06f, 3.43273939e-07f,  2.81022636e-08f};
-    static const float tail[9] = {2.83297682f,     1.00167406f,     0.00943887047f,
-                                  -0.0076224613f,  0.00573950773f,  -0.00367342844f,
-                                  0.00134934322f,  0.000100950558f, -0.000200214257f};
     const float w = -fast_log(fmaxf((1 - x) * (1 + x), 1.2e-7f));
     if (w < 5)
-        return polynomial8(middle, w - 2.5f) * x;
-    return polynomial8(tail, sqrtf(w) - 3) * x;
+        return polynomial8(erf_inverse_middle, w - 2.5f) * x;
+    return polynomial8(erf_inverse_tail, sqrtf(w) - 3) * x;
 }
 
 // The hemisphere of GGX facets is the upper half of an ellipsoid; stretched to a sphere, what v

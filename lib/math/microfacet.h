@@ -91,6 +91,8 @@ vec3 microfacet_sample(const struct microfacet *m, vec3 v, struct vec2 u);
 // The inverse of erf on (-1, 1): relative error 3.5e-7 (Giles 2012, Approximating the erfinv
 // function, table 5). Arguments of +-1 give about +-4.
 float erf_inverse(float x);
+// Its coefficients: in w - 2.5 and, from w = 5 on, in sqrt(w) - 3, of w = -log(1 - x^2).
+extern const float erf_inverse_middle[9], erf_inverse_tail[9];
 
 // What a rough dielectric boundary reflects and transmits of light from v, single scattering, by
 // quadrature over visible normals with n x n nodes: the two sum to less than 1 where facets shadow

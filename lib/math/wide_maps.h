@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of vec.h, frame.h, ray.h, elementary.h and warp.h for sixteen lanes, operation by
-// operation, so that a lane has the bits of the function of one: tests/unit/wide.c holds them to
+// The functions of vec.h, frame.h, ray.h and warp.h for sixteen lanes, operation by
+// operation, so that a lane has the bits of the function of one: tests/render/wide.c holds them to
 // that. Derivations stand there.
 #pragma once
 
 #include "math/ray.h"
-#include "math/wide.h"
+#include "math/wide_elementary.h"
 
 static inline struct wide3 wide_normalize(struct wide3 a) {
     const wide l2 = wide_dot(a, a);
@@ -17,6 +17,11 @@ static inline struct wide3 wide_normalize(struct wide3 a) {
         wide3_set_lane(&n, i, normalize(wide3_lane(&a, i)));
     }
     return n;
+}
+
+static inline struct wide3 wide_reflect(struct wide3 w, struct wide3 n) {
+    const wide twice = 2 * wide_dot(w, n);
+    return wide3_sub(wide3_scale(twice, n), w);
 }
 
 struct wide_frame {
@@ -66,14 +71,6 @@ static inline struct wide3 wide_offset_point(struct wide3 p, struct wide3 error,
     const wide d = wide_negate(wide_dot(w, n) < 0, wide_dot(wide3_abs(n), error));
     return (struct wide3){wide_offset_axis(p.x, d * n.x), wide_offset_axis(p.y, d * n.y),
                           wide_offset_axis(p.z, d * n.z)};
-}
-
-static inline void wide_sincos_octant(wide x, wide *sine, wide *cosine) {
-    const wide x2 = x * x;
-    *sine = x + x * x2 * (-1.6666654611e-1f + x2 * (8.3321608736e-3f - x2 * 1.9515295891e-4f));
-    *cosine = 1 - 0.5f * x2 +
-              x2 * x2 * (4.166664568298827e-2f +
-                         x2 * (-1.388731625493765e-3f + x2 * 2.443315711809948e-5f));
 }
 
 static inline struct wide3 wide_cosine_hemisphere(const wide u[2]) {

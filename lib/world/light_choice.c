@@ -193,16 +193,27 @@ static bool choose_part(const struct light_choice *c, const struct light_place *
 }
 
 static bool sample_chosen(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
-                          struct light_sample *s) {
-    if (l->type->aim) {
-        const bool lit = l->type->aim(l->data, u2, s);
-        s->late = true;
-        return lit;
-    }
-    const bool lit = l->parts ? l->type->part_sample(l->data, part - l->first_part, p, u2, s)
-                              : l->type->sample(l->data, p, u2, s);
-    s->late = false;
-    return lit;
+                          float pmf, struct light_sample *s) {
+    bool lit;
+    if (l->type->aim)
+        lit = l->type->aim(l->data, u2, s);
+    else if (l->parts)
+        lit = l->type->part_sample(l->data, part - l->first_part, p, u2, s);
+    else
+        lit = l->type->sample(l->data, p, u2, s);
+    s->late = l->type->aim != NULL;
+    s->pdf_sa *= pmf;
+    return lit && s->pdf_sa > 0;
+}
+
+uint32_t light_choice_of_all(const struct light_choice *c, uint32_t count, float u1, float *pmf) {
+    *pmf = 1;
+    return count > 1 ? alias_sample(&c->table, u1, pmf, NULL) : 0;
+}
+
+bool light_chosen_sample(const struct world_light *l, vec3 p, struct vec2 u2, float pmf,
+                         struct light_sample *s) {
+    return sample_chosen(l, l->first_part, p, u2, pmf, s);
 }
 
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
@@ -217,13 +228,10 @@ bool light_choice_sample(const struct light_choice *c, const struct world_light 
         if (!choose_part(c, at, u1, u2, &part, &pmf))
             return false;
         *light = part & LIGHT_TREE_LEAF ? part & ~LIGHT_TREE_LEAF : c->part_light[part];
-    } else if (count > 1) {
-        *light = alias_sample(&c->table, u1, &pmf, NULL);
+    } else {
+        *light = light_choice_of_all(c, count, u1, &pmf);
     }
-    if (!sample_chosen(&all[*light], part, at->p, u2, s))
-        return false;
-    s->pdf_sa *= pmf;
-    return s->pdf_sa > 0;
+    return sample_chosen(&all[*light], part, at->p, u2, pmf, s);
 }
 
 float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,

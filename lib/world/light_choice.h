@@ -52,6 +52,10 @@ const char *light_choice_name(const struct light_choice *c);
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
                          uint32_t count, const struct light_place *at, float u1, struct vec2 u2,
                          uint32_t *light, struct light_sample *s);
+// Its two steps where lights are not chosen by part: a light, and a point on it.
+uint32_t light_choice_of_all(const struct light_choice *c, uint32_t count, float u1, float *pmf);
+bool light_chosen_sample(const struct world_light *l, vec3 p, struct vec2 u2, float pmf,
+                         struct light_sample *s);
 static inline spectrum light_late_emission(const struct world_light *light, vec3 wi) {
     return light->type->emission(light->data, &(struct light_hit){.wi = wi, .distance = INFINITY});
 }

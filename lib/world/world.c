@@ -48,15 +48,30 @@ static bool prepare_bsdfs(struct scene *s) {
     return true;
 }
 
-static void find_lambert(struct world *w, const struct scene *s) {
-    struct lambert l;
+// 0: there are too many kinds already.
+static uint32_t index_of_kind(struct world *w, const struct wide_bsdf *kind) {
+    uint32_t k = 1;
+    while (k < w->wide_kind_count && w->wide_kinds[k] != kind)
+        k++;
+    if (k == WORLD_MOST_WIDE_KINDS)
+        return 0;
+    w->wide_kinds[k] = kind;
+    w->wide_kind_count = k < w->wide_kind_count ? w->wide_kind_count : k + 1;
+    return k;
+}
+
+static void find_wide_materials(struct world *w, const struct scene *s) {
+    struct wide_material m;
+    w->wide_kind_count = 1;
     for (uint32_t i = 0; i < s->shape_count; i++) {
         struct world_shape *shape = &w->shapes[i];
-        if (shape->kind != SHAPE_MESH || s->shapes[i].group != SCENE_NONE ||
-            !bsdf_is_lambert(shape->bsdf, &l))
+        if (w->tangents_matter || shape->kind != SHAPE_MESH || s->shapes[i].group != SCENE_NONE ||
+            !bsdf_wide(shape->bsdf, &m))
             continue;
-        shape->reflectance = l.reflectance;
-        shape->two_sided = l.two_sided;
+        shape->wide_kind = (uint8_t)index_of_kind(w, m.kind);
+        shape->wide_data = m.data;
+        shape->two_sided = m.two_sided;
+        shape->textured = m.textured;
     }
 }
 
@@ -152,7 +167,7 @@ struct world *world_create(struct scene *s, int threads) {
     init_shapes(w, s);
     if (!init_transforms(w, s) || !prepare_lights(w, s) || !prepare_media(w, s))
         goto fail;
-    find_lambert(w, s);
+    find_wide_materials(w, s);
     const double start = time_seconds();
     w->accel = accel_create(s, threads);
     w->accel_seconds = time_seconds() - start;

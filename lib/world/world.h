@@ -3,7 +3,7 @@
 #pragma once
 
 #include "accel/accel.h"
-#include "bsdf/bsdf.h"
+#include "bsdf/bsdf_wide.h"
 #include "math/wide_maps.h"
 #include "medium/medium.h"
 #include "scene/scene.h"
@@ -26,10 +26,13 @@ struct world_shape {
     const struct object *bsdf;
     uint32_t light;             // or SCENE_NONE
     uint8_t kind;               // enum shape_kind
-    bool flip_normals;
-    bool two_sided;                      // of reflectance
-    const struct texture_ref *reflectance; // of a mesh with Lambert's law; NULL: anything else
+    uint8_t wide_kind;          // index of world.wide_kinds; 0: its points are shaded one by one
+    bool flip_normals : 1;
+    bool two_sided : 1, textured : 1; // of the wide material
+    const void *wide_data;
 };
+
+enum { WORLD_MOST_WIDE_KINDS = 16 };
 
 // The media of both sides of a shape, SCENE_NONE for a vacuum.
 struct world_boundary {
@@ -40,6 +43,8 @@ struct world_boundary {
 struct world {
     const struct scene *scene;
     struct world_shape *shapes;        // by shape
+    const struct wide_bsdf *wide_kinds[WORLD_MOST_WIDE_KINDS]; // 0 is none
+    uint32_t wide_kind_count;
     struct accel *accel;
     struct world_light *lights; // index: as in the scene
     uint32_t light_count;

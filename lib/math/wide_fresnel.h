@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// fresnel.h for sixteen lanes, operation by operation.
+#pragma once
+
+#include "math/wide.h"
+
+// One channel of fresnel_conductor.
+static inline wide wide_fresnel_conductor_channel(wide c, wide eta, wide k) {
+    const wide c2 = c * c, s2 = wide_max(1 - c2, wide_of(0));
+    const wide m = (eta - 1) * (eta + 1) - k * k + c2;
+    const wide ek = eta * k, ek2 = ek * ek, tiny = wide_of(1e-30f);
+    const wide norm = wide_sqrt(m * m + 4 * ek2);
+    const wide big = 0.5f * (norm + wide_abs(m));
+    const wide small = ek2 / wide_max(big, tiny);
+    const wide a2 = wide_select(m >= 0, big, small), b2 = wide_select(m >= 0, small, big);
+    const wide a = wide_sqrt(a2);
+    const wide am = a - c, ap = a + c, pm = c * a - s2, pp = c * a + s2;
+    const wide r_s = (am * am + b2) / wide_max(ap * ap + b2, tiny);
+    const wide r_p = (pm * pm + c2 * b2) / wide_max(pp * pp + c2 * b2, tiny);
+    return wide_min(0.5f * r_s * (1 + r_p), wide_of(1));
+}
+
+static inline struct wide3 wide_fresnel_conductor(wide c, struct wide3 eta, struct wide3 k) {
+    return (struct wide3){wide_fresnel_conductor_channel(c, eta.x, k.x),
+                          wide_fresnel_conductor_channel(c, eta.y, k.y),
+                          wide_fresnel_conductor_channel(c, eta.z, k.z)};
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "world/light_lanes.h"
+
+static void set_sample(struct light_lanes *out, int i, const struct light_sample *l) {
+    wide3_set_lane(&out->s.wi, i, l->wi);
+    wide3_set_lane(&out->s.p, i, l->p);
+    wide3_set_lane(&out->s.p_error, i, l->p_error);
+    wide3_set_lane(&out->s.n, i, l->n);
+    out->s.distance[i] = l->distance;
+    out->s.pdf_sa[i] = l->pdf_sa;
+    out->emission[i] = l->emission;
+    out->delta |= (uint32_t)l->delta << i;
+    out->late |= (uint32_t)l->late << i;
+}
+
+static void merge(wide_mask m, const struct light_samples *from, struct light_samples *to) {
+    to->wi = wide3_select(m, from->wi, to->wi);
+    to->p = wide3_select(m, from->p, to->p);
+    to->p_error = wide3_select(m, from->p_error, to->p_error);
+    to->n = wide3_select(m, from->n, to->n);
+    to->distance = wide_select(m, from->distance, to->distance);
+    to->pdf_sa = wide_select(m, from->pdf_sa, to->pdf_sa);
+}
+
+static bool is_wide(const struct world_light *l) {
+    return l->type->has_wide && l->type->has_wide(l->data);
+}
+
+// One light for many lanes.
+static uint32_t sample_together(const struct world_light *l, uint32_t lanes, const struct wide3 *p,
+                                const wide u[2], wide pmf, struct light_lanes *out) {
+    struct light_samples s;
+    const uint32_t lit = lanes & wide_bits(l->type->sample_wide(l->data, p, u, &s));
+    s.pdf_sa *= pmf;
+    merge(wide_mask_of(lit), &s, &out->s);
+    for (uint32_t left = lit; left; left &= left - 1)
+        out->emission[__builtin_ctz(left)] = s.emission;
+    return lit;
+}
+
+static uint32_t sample_alone(const struct world_light *l, uint32_t lanes, const struct wide3 *p,
+                             const wide u[2], wide pmf, struct light_lanes *out) {
+    uint32_t lit = 0;
+    for (uint32_t left = lanes; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        struct light_sample s;
+        if (!light_chosen_sample(l, wide3_lane(p, i), (struct vec2){u[0][i], u[1][i]}, pmf[i], &s))
+            continue;
+        set_sample(out, i, &s);
+        lit |= 1u << i;
+    }
+    return lit;
+}
+
+// Lights chosen by a table: light by light, with all lanes that chose it.
+static uint32_t sample_chosen(const struct world *w, uint32_t wanted, const struct wide3 *p,
+                              wide u1, const wide u2[2], struct light_lanes *out) {
+    wide pmf = wide_of(1);
+    uint32_t lit = 0;
+    for (uint32_t left = wanted; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        float one;
+        out->light[i] = light_choice_of_all(&w->choice, w->light_count, u1[i], &one);
+        pmf[i] = one;
+    }
+    for (uint32_t left = wanted; left;) {
+        const uint32_t light = out->light[__builtin_ctz(left)];
+        uint32_t lanes = 0;
+        for (uint32_t rest = left; rest; rest &= rest - 1)
+            lanes |= (uint32_t)(out->light[__builtin_ctz(rest)] == light) << __builtin_ctz(rest);
+        const struct world_light *l = &w->lights[light];
+        lit |= is_wide(l) ? sample_together(l, lanes, p, u2, pmf, out)
+                          : sample_alone(l, lanes, p, u2, pmf, out);
+        left &= ~lanes;
+    }
+    return lit;
+}
+
+uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struct wide3 *p,
+                             const struct wide3 *side, wide u1, const wide u2[2],
+                             struct light_lanes *out) {
+    uint32_t lit = 0;
+    out->delta = out->late = 0;
+    if (w->light_count == 0)
+        return 0;
+    if (!w->choice.by_part)
+        return sample_chosen(w, wanted, p, u1, u2, out);
+    for (uint32_t left = wanted; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const struct light_place at = {wide3_lane(p, i), wide3_lane(side, i)};
+        struct light_sample l;
+        if (!world_sample_light(w, &at, u1[i], (struct vec2){u2[0][i], u2[1][i]}, &out->light[i],
+                                &l))
+            continue;
+        set_sample(out, i, &l);
+        lit |= 1u << i;
+    }
+    return lit;
+}
+
+void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,
+                       struct wide3 *d, wide *tmax) {
+    *o = surfaces_offset(s, l->wi);
+    const struct wide3 straight = wide3_sub(l->p, *o);
+    const wide reach = 4 * 0x1p-24f * wide_largest(straight);
+    const struct wide3 error = {l->p_error.x + reach, l->p_error.y + reach, l->p_error.z + reach};
+    const struct wide3 back = {-l->wi.x, -l->wi.y, -l->wi.z};
+    const struct wide3 target = wide_offset_point(l->p, error, l->n, back);
+    const wide_mask faces = wide_dot(l->n, l->n) > 0, near = l->distance < INFINITY;
+    *d = wide3_select(near, wide3_select(faces, wide3_sub(target, *o), straight), l->wi);
+    *tmax = wide_select(near, wide_of(1), wide_of(INFINITY));
+}

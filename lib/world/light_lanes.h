@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light sampling for sixteen places: world_sample_light and world_shadow_ray, lane by lane.
+#pragma once
+
+#include "world/world.h"
+
+struct light_lanes {
+    struct light_samples s; // but not its emission
+    spectrum emission[WIDE_LANES];
+    uint32_t light[WIDE_LANES];
+    uint32_t delta, late;   // a bit a lane
+};
+
+// The lanes of `wanted` that a light may light. u1 as for world_sample_light.
+uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struct wide3 *p,
+                             const struct wide3 *side, wide u1, const wide u2[2],
+                             struct light_lanes *out);
+
+// Shadow rays from surfaces to those samples; t from 0 to *tmax.
+void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,
+                       struct wide3 *d, wide *tmax);
