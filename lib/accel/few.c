@@ -11,7 +11,7 @@
 #include "accel/few.h"
 
 #include "accel/few_facet.h"
-#include "accel/placed_quadric.h"
+#include "accel/few_sphere.h"
 #include "base/mem.h"
 #include "scene/quadric.h"
 
@@ -21,6 +21,7 @@ enum { MOST_TRIANGLES = 100, MOST_QUADRICS = 8 };
 struct few_quadric {
     struct placed_quadric placed;
     float centre[3], radius; // of a sphere that holds it
+    bool is_sphere;          // for few_sphere_hits
 };
 
 struct few {
@@ -69,6 +70,7 @@ static void add_shape(struct few *f, const struct scene *s, uint32_t shape) {
     }
     struct few_quadric *q = &f->quadrics[f->quadric_count++];
     placed_quadric_init(&q->placed, s, shape);
+    q->is_sphere = few_sphere_is_one(&q->placed);
     set_bounds(q);
 }
 
@@ -131,14 +133,16 @@ static wide_mask line_meets(const struct few_facet *f, struct wide3 d, struct wi
     return (least >= -slack) | (most <= slack);
 }
 
-// Where the rays meet the facet's plane: t is distance over speed; speed is not negative.
-static void meet_plane(const struct few_facet *f, const struct accel_rays *r, wide *distance,
-                       wide *speed) {
+// Where the rays meet the facet's plane, and which do so between tmin and tmax: t is distance over
+// speed; speed is not negative.
+static wide_mask meet_plane(const struct few_facet *f, const struct accel_rays *r, wide tmax,
+                            wide *distance, wide *speed) {
     const struct wide3 to_corner = {f->corner[0] - r->o.x, f->corner[1] - r->o.y,
                                     f->corner[2] - r->o.z};
     const wide along = dot_with(f->normal, r->d);
     *distance = wide_negate(along < 0, dot_with(f->normal, to_corner));
     *speed = wide_abs(along);
+    return (*distance > r->tmin * *speed) & (*distance < tmax * *speed);
 }
 
 // Lanes whose ray may meet the quadric before tmax: none that does is left out.
@@ -152,25 +156,38 @@ static uint32_t come_near(const struct few_quadric *q, const struct accel_rays *
                      (t - half <= tmax));
 }
 
-static bool quadric_hit(const struct few_quadric *q, const struct accel_rays *r, int i, float tmax,
-                        double *t) {
-    const double o[3] = {(double)r->o.x[i], (double)r->o.y[i], (double)r->o.z[i]};
-    const double d[3] = {(double)r->d.x[i], (double)r->d.y[i], (double)r->d.z[i]};
-    return placed_quadric_hit(&q->placed, o, d, (double)r->tmin[i], (double)tmax, t);
+// Of those lanes, the ones that meet it before tmax, and where.
+static uint32_t quadric_hits(const struct few_quadric *q, const struct accel_rays *r, uint32_t near,
+                             wide tmax, wide *t) {
+    if (q->is_sphere)
+        return near & few_sphere_hits(&q->placed, r, tmax, t);
+    uint32_t hits = 0;
+    for (; near; near &= near - 1) {
+        const int i = __builtin_ctz(near);
+        const double o[3] = {(double)r->o.x[i], (double)r->o.y[i], (double)r->o.z[i]};
+        const double d[3] = {(double)r->d.x[i], (double)r->d.y[i], (double)r->d.z[i]};
+        double found;
+        if (!placed_quadric_hit(&q->placed, o, d, (double)r->tmin[i], (double)tmax[i], &found))
+            continue;
+        (*t)[i] = (float)found;
+        hits |= 1u << i;
+    }
+    return hits;
 }
 
 static void intersect_quadrics(const struct few *f, const struct accel_rays *r, wide *best,
                                wide_int *found, struct accel_hits *h) {
     for (uint32_t k = 0; k < f->quadric_count; k++) {
         const uint32_t near = come_near(&f->quadrics[k], r, *best);
-        for (int i = 0; i < WIDE_LANES; i++) {
-            double t;
-            if (near >> i & 1 && quadric_hit(&f->quadrics[k], r, i, (*best)[i], &t)) {
-                (*best)[i] = (float)t;
-                (*found)[i] = (int32_t)(f->facet_count + k);
-                h->u[i] = h->v[i] = 0;
-            }
-        }
+        wide t = *best;
+        if (!near)
+            continue;
+        const wide_mask hit = wide_mask_of(quadric_hits(&f->quadrics[k], r, near, *best, &t));
+        const wide_int index = wide_int_of((int32_t)(f->facet_count + k));
+        *best = wide_select(hit, t, *best);
+        *found = wide_int_select(hit, index, *found);
+        h->u = wide_select(hit, wide_of(0), h->u);
+        h->v = wide_select(hit, wide_of(0), h->v);
     }
 }
 
@@ -224,9 +241,10 @@ void few_intersect(const struct few *f, const struct accel_rays *r, struct accel
     for (uint32_t k = 0; k < f->facet_count; k++) {
         const struct few_facet *facet = &f->facets[k];
         wide sides[4], distance, speed;
-        const wide_mask meets = line_meets(facet, d, o_cross_d, sides);
-        meet_plane(facet, r, &distance, &speed);
-        const wide_mask hit = meets & (distance > r->tmin * speed) & (distance < b.t * speed);
+        const wide_mask reached = meet_plane(facet, r, b.t, &distance, &speed);
+        if (!wide_any(reached))
+            continue;
+        const wide_mask hit = reached & line_meets(facet, d, o_cross_d, sides);
         if (!wide_any(hit))
             continue;
         b.t = wide_select(hit, distance / speed, b.t);
@@ -248,17 +266,15 @@ uint32_t few_occluded(const struct few *f, const struct accel_rays *r) {
     uint32_t blocked = 0;
     for (uint32_t k = 0; k < f->facet_count && blocked != live; k++) {
         wide sides[4], distance, speed;
-        const wide_mask meets = line_meets(&f->facets[k], d, o_cross_d, sides);
-        meet_plane(&f->facets[k], r, &distance, &speed);
-        blocked |= wide_bits(meets & (distance > r->tmin * speed) & (distance < r->tmax * speed));
+        const wide_mask reached = meet_plane(&f->facets[k], r, r->tmax, &distance, &speed);
+        if (wide_any(reached))
+            blocked |= wide_bits(reached & line_meets(&f->facets[k], d, o_cross_d, sides));
     }
     for (uint32_t k = 0; k < f->quadric_count && blocked != live; k++) {
         const uint32_t near = come_near(&f->quadrics[k], r, r->tmax) & ~blocked;
-        for (int i = 0; i < WIDE_LANES; i++) {
-            double t;
-            if (near >> i & 1 && quadric_hit(&f->quadrics[k], r, i, r->tmax[i], &t))
-                blocked |= 1u << i;
-        }
+        wide t = r->tmax;
+        if (near)
+            blocked |= quadric_hits(&f->quadrics[k], r, near, r->tmax, &t);
     }
     return blocked;
 }
