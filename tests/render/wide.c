@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lambertian vertices that are shaded sixteen at a time have the bits of those shaded one by one,
-// for every sampler; and pictures of scenes whose packets mix pixels do not depend on the crop.
+// Vertices that are shaded sixteen at a time have the bits of those shaded one by one, for every
+// sampler; and pictures of scenes whose packets mix pixels do not depend on the crop. Materials by
+// themselves: property/bsdf_wide.c.
 #include "render/picture.h"
 
 static const char scene[] =
@@ -21,6 +22,14 @@ static const char scene[] =
     "<shape type='cube'><transform name='to_world'><scale value='0.5'/>"
     "<rotate y='1' angle='30'/><translate x='-0.8' y='0.5'/></transform>"
     "<bsdf type='diffuse'><rgb name='reflectance' value='0.9,0.5,0.1'/></bsdf></shape>"
+    "<shape type='cube'><transform name='to_world'><scale x='0.6' y='0.05' z='0.4'/>"
+    "<rotate z='1' angle='20'/><translate x='0.3' y='0.2' z='1.2'/></transform>"
+    "<bsdf type='twosided'><bsdf type='roughconductor'><float name='alpha' value='0.05'/>"
+    "<texture name='specular_reflectance' type='checkerboard'/></bsdf></bsdf></shape>"
+    "<shape type='rectangle'><transform name='to_world'><scale value='0.7'/>"
+    "<translate x='-1' y='1.2' z='-1.5'/></transform><bsdf type='roughconductor'>"
+    "<string name='distribution' value='ggx'/><float name='alpha' value='0.3'/>"
+    "<string name='material' value='Cu'/></bsdf></shape>"
     "<shape type='sphere'><point name='center' x='0.8' y='0.5' z='0.3'/>"
     "<float name='radius' value='0.5'/><bsdf type='plastic'/></shape>"
     "<shape type='rectangle'><transform name='to_world'><scale value='0.5'/>"
