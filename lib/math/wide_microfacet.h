@@ -3,6 +3,8 @@
 // Derivations stand there.
 #pragma once
 
+#include <stddef.h>
+
 #include "math/microfacet.h"
 #include "math/wide_maps.h"
 
