@@ -79,6 +79,8 @@ const struct param editable_params[] = {
      .help = "coefficients of a curve that is generated; files keep their own bins"},
     {"bins_b", PARAM_INT, AT(bins_b), .def = "-1", .min = -1, .max = 4096, .unit = "",
      .help = "the same for f_B (-1: bins)"},
+    {"bins_constant", PARAM_INT, AT(bins_constant), .def = "-1", .min = -1, .max = 4096, .unit = "",
+     .help = "the same for curves that are constant (-1: bins)"},
     {"basis", PARAM_CHOICE, AT(basis), .def = "hat", .unit = "",
      .help = "steps, or lines between nodes", .choices = bases},
     {"spacing", PARAM_CHOICE, AT(spacing), .def = "uniform", .unit = "",
@@ -104,14 +106,24 @@ static void set_colour(double out[CURVE_CHANNELS], spectrum s) {
         out[k] = (double)s[k];
 }
 
+// What of a reflectance is a number of the form, to be edited; a texture is a factor of its own.
+static spectrum even_part(const struct texture_ref *r) {
+    return r->texture ? spectrum_grey(1) : r->value;
+}
+
+static const struct texture_ref *textured_part(const struct texture_ref *r) {
+    static const struct texture_ref one = {.value = {1, 1, 1}};
+    return r->texture ? r : &one;
+}
+
 static void fill_parameters(const struct editable *e, struct model_parameters *p) {
-    const bool has_diffuse = e->diffuse.texture || spectrum_max(e->diffuse.value) > 0;
     *p = model_defaults;
     p->exponent_u = given(e->exponent_u, e->exponent);
     p->exponent_v = given(e->exponent_v, e->exponent);
     p->alpha_u = fmax(given(e->alpha_u, e->alpha), 1e-4);
     p->alpha_v = fmax(given(e->alpha_v, e->alpha), 1e-4);
-    set_colour(p->diffuse, spectrum_grey(has_diffuse)); // the texture is a factor of its own
+    set_colour(p->reflectance, even_part(&e->specular));
+    set_colour(p->diffuse, even_part(&e->diffuse));
     set_colour(p->eta, e->index.eta);
     set_colour(p->k, e->index.k);
     set_colour(p->r0, e->r0);
@@ -155,14 +167,29 @@ static bool is_second_curve(const struct form *f, uint32_t curve) {
     return b;
 }
 
+// Whether a generated curve is the same everywhere: a constant, or the Fresnel factor of what reflects
+// everything.
+static bool is_constant(const struct form_curve *c) {
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        if (c->f[k].kind != FUNCTION_CONSTANT &&
+            !(c->f[k].kind == FUNCTION_FRESNEL && !(c->f[k].p[0] > 0)))
+            return false;
+    return true;
+}
+
+// Coefficients of a curve that no file gives.
+static uint32_t bins_of(const struct editable *e, uint32_t curve) {
+    if (e->bins_constant > 1 && is_constant(&e->form.curve[curve]))
+        return (uint32_t)e->bins_constant;
+    return (uint32_t)(e->bins_b > 1 && is_second_curve(&e->form, curve) ? e->bins_b : e->bins);
+}
+
 static void tabulate(struct editable *e, struct curve *tables[FORM_CURVES], struct arena *arena) {
     for (uint32_t c = 0; c < e->form.curves; c++) {
-        const bool second = e->bins_b > 1 && is_second_curve(&e->form, c);
         const struct basis *own = e->form.curve[c].f[0].kind == FUNCTION_TABLE
                                       ? &e->form.curve[c].f[0].table->basis : NULL;
         const struct basis even =
-            own ? *own : basis_make(arena, (enum basis_kind)e->basis,
-                                    (uint32_t)(second ? e->bins_b : e->bins),
+            own ? *own : basis_make(arena, (enum basis_kind)e->basis, bins_of(e, c),
                                     (enum basis_spacing)e->spacing);
         const enum curve_filter filter = e->weighting == 0   ? form_filter(&e->form, c)
                                          : e->weighting == 1 ? FILTER_MEAN : FILTER_POINT;
@@ -198,7 +225,8 @@ static bool make_own_terms(struct editable *e, const char *at, struct arena *are
         !model_make(model_find(model_names[e->model]), &p, arena, &e->form, at))
         return false;
     for (uint32_t t = 0; t < e->form.terms; t++)
-        e->texture[t] = strcmp(e->form.term[t].name, "diffuse") == 0 ? &e->diffuse : &e->specular;
+        e->texture[t] = textured_part(strcmp(e->form.term[t].name, "diffuse") == 0 ? &e->diffuse
+                                                                                   : &e->specular);
     tabulate(e, tables, arena);
     return edit_curves(e, tables, at);
 }

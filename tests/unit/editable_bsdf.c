@@ -87,7 +87,10 @@ static void terms_add_up(void) {
     const double peak = 22 / (2 * M_PI), even = 0.25 / M_PI;
     check_colour(value_of(o, 0.25f, v3(0, 0, 1), v3(0, 0, 1)), even + 0.5 * peak, even + 0.4 * peak,
                  even + 0.3 * peak, 2e-4 * peak);
-    CHECK(editable_texture(o, 0)->value[0] == 0.25f && editable_texture(o, 1)->value[0] == 0.5f);
+    // Plain colours are f_q; only textures are factors of their own.
+    const struct form_term *even_term = &editable_form(o)->term[0];
+    CHECK_NEAR(even_term->scale[0], 0.25 / M_PI, 1e-7);
+    CHECK(editable_texture(o, 0)->value[0] == 1 && editable_texture(o, 1)->value[0] == 1);
     scene_destroy(s);
 }
 
