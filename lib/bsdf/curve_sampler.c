@@ -132,6 +132,29 @@ static double marginal_sample(const struct curve_marginal *m, double u) {
     return m->edges[lo] + t * (m->edges[lo + 1] - m->edges[lo]);
 }
 
+double curve_marginal_cdf(const struct curve_marginal *m, enum curve_strategy_kind kind,
+                          double gamma) {
+    double t;
+    const uint32_t i = basis_interval(m->basis, gamma, &t);
+    const double x = coordinate(kind, m->gamma.kind, gamma);
+    const double width = m->edges[i + 1] - m->edges[i];
+    t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;
+    const double a = m->ends[i][0], b = m->ends[i][1];
+    return fmin(m->cdf[i] + (a + 0.5 * t * (b - a)) * t * width, 1);
+}
+
+void curve_marginal_level(struct curve_marginal *m, struct arena *arena) {
+    const uint32_t n = basis_intervals(m->basis);
+    double *cdf = arena_alloc(arena, sizeof *cdf * (n + 1));
+    double(*ends)[2] = arena_alloc(arena, sizeof *ends * n);
+    for (uint32_t i = 0; i < n; i++) {
+        cdf[i + 1] = (i + 1.0) / n;
+        ends[i][0] = ends[i][1] = 1 / (n * (m->edges[i + 1] - m->edges[i]));
+    }
+    m->cdf = cdf;
+    m->ends = (const double(*)[2])ends;
+}
+
 // ---- strategies of a term -------------------------------------------------------------------
 
 static enum curve_strategy_kind kind_of(enum gamma_kind g) {
@@ -300,8 +323,8 @@ static struct direction around(struct direction axis, double x, double phi) {
     return direction_around(axis, 1 - 2 * x, 2 * sqrt(x * (1 - x)), phi);
 }
 
-static struct direction strategy_sample(const struct curve_strategy *s, struct direction wo,
-                                        double left, double u, double v) {
+struct direction curve_strategy_sample(const struct curve_strategy *s, struct direction wo,
+                                       double left, double u, double v) {
     const double phi = 2 * M_PI * v;
     const struct direction mirror = {-wo.x, -wo.y, wo.z};
     switch (s->kind) {
@@ -321,5 +344,5 @@ struct direction curve_sampler_sample(const struct curve_sampler *s, struct dire
         i++;
     }
     const double left = s->strategy[i].share > 0 ? u1 / s->strategy[i].share : 0;
-    return strategy_sample(&s->strategy[i], wo, fmin(left, 1), u, v);
+    return curve_strategy_sample(&s->strategy[i], wo, fmin(left, 1), u, v);
 }

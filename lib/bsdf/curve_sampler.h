@@ -58,6 +58,12 @@ struct curve_sampler {
     struct curve_strategy strategy[CURVE_STRATEGIES]; // the cosine first
 };
 
+// What a marginal has up to gamma; it has a basis.
+double curve_marginal_cdf(const struct curve_marginal *m, enum curve_strategy_kind kind,
+                          double gamma);
+// Gives every interval the same probability, even inside.
+void curve_marginal_level(struct curve_marginal *m, struct arena *arena);
+
 // From a term whose curves are tables; memory from the arena. Shares are equal at first.
 void curve_sampler_init(struct curve_sampler *s, const struct form *f, const struct form_term *t,
                         struct arena *arena);
@@ -67,6 +73,9 @@ double curve_strategy_pdf_sa(const struct curve_strategy *s, struct direction wo
                              struct direction wi, struct angles *a);
 double curve_sampler_pdf_sa(const struct curve_sampler *s, struct direction wo,
                             struct direction wi, struct angles *a);
+// left decides between the two images of a half vector. The direction may lie below.
+struct direction curve_strategy_sample(const struct curve_strategy *s, struct direction wo,
+                                       double left, double u, double v);
 // u1 chooses the strategy; what is left of it, and u, v, choose the direction, which may lie below.
 struct direction curve_sampler_sample(const struct curve_sampler *s, struct direction wo,
                                       double u1, double u, double v);

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene made ready for symbolic path tracing: which shape is which object, and who answers how.
+#include "driver/precompute_polynomial.h"
+
+#include <string.h>
+
+#include "bsdf/editable_data.h"
+
+// ---- the scene --------------------------------------------------------------------------------
+
+enum { BINS_B = 8 }; // of a second curve, unless the material says how many
+
+// No curve needs more bins than the eye's hop has; one that is constant needs two.
+static void limit_bins(struct object *o, uint32_t most) {
+    struct editable *e = o->data;
+    const int limit = most > 2 ? (int)most : 2;
+    if (o->type != &bsdf_editable.entry)
+        return;
+    e->bins = e->bins < limit ? e->bins : limit;
+    e->bins_b = e->bins_b > 1 ? e->bins_b : BINS_B;
+    e->bins_b = e->bins_b < limit ? e->bins_b : limit;
+    if (e->bins_constant < 0 && !e->edit[SLOT_O] && !e->edit[SLOT_A] && !e->edit[SLOT_B])
+        e->bins_constant = 2;
+}
+
+struct edit_request {
+    const struct polynomial_options *options;
+    bool done;
+};
+
+static void edit_scene(struct scene *s, void *user) {
+    struct edit_request *r = user;
+    const struct polynomial_options *o = r->options;
+    r->done = edit_convert(s, o->edit, o->edit_count);
+    for (uint32_t i = 0; i < s->bsdf_count; i++)
+        limit_bins(s->bsdfs[i], o->series[0]);
+}
+
+// The editable material of a shape: its own, or that inside a twosided. NULL: it is fixed.
+static const struct object *editable_of(const struct object *bsdf, bool *two_sided) {
+    const struct param *front = param_find(bsdf->type, "front"), *back;
+    const struct object *inside = bsdf, *other = NULL;
+    *two_sided = false;
+    if (bsdf->type == &bsdf_twosided.entry && front) {
+        back = param_find(bsdf->type, "back");
+        memcpy(&inside, (const char *)bsdf->data + front->offset, sizeof inside);
+        memcpy(&other, (const char *)bsdf->data + back->offset, sizeof other);
+        *two_sided = true;
+    }
+    return inside->type == &bsdf_editable.entry && !other ? inside : NULL;
+}
+
+static void find_objects(struct polynomial *p) {
+    const struct scene *s = p->job.scene;
+    int *object = arena_alloc(&p->arena, (s->shape_count + 1) * sizeof *object);
+    bool *two_sided = arena_alloc(&p->arena, (s->shape_count + 1) * sizeof *two_sided);
+    for (uint32_t i = 0; i < s->shape_count; i++) {
+        const struct object *material = editable_of(s->shapes[i].bsdf, &two_sided[i]);
+        object[i] = material ? (int)edit_plan_find(&p->plan, material->data) : CHAIN_FIXED;
+    }
+    p->response.object_of_shape = object;
+    p->response.two_sided = two_sided;
+}
+
+// An object that no shape shows but through a wrapper would be edited in vain.
+static bool all_are_found(const struct polynomial *p) {
+    for (uint32_t i = 0; i < p->plan.count; i++) {
+        bool found = false;
+        for (uint32_t s = 0; s < p->job.scene->shape_count; s++)
+            found = found || p->response.object_of_shape[s] == (int)i;
+        if (!found) {
+            log_error("%s: editable material \"%s\" is inside another one; with --bounces it may "
+                      "stand alone or in a twosided", p->job.scene->path, p->plan.objects[i].name);
+            return false;
+        }
+    }
+    return true;
+}
+
+// ---- the response -----------------------------------------------------------------------------
+
+static void make_response(struct polynomial *p, uint32_t bounces) {
+    p->objects = arena_alloc(&p->arena, p->plan.count * sizeof *p->objects);
+    for (uint32_t i = 0; i < p->plan.count; i++) {
+        struct symbolic_object *o = &p->objects[i];
+        symbolic_object_init(o, p->plan.objects[i].form, &p->arena);
+        for (uint32_t t = 0; t < o->form->terms; t++)
+            o->texture[t] = editable_texture(p->plan.objects[i].material, t);
+        o->second = p->groups.second[i];
+    }
+    symbolic_init(&p->response);
+    p->response.objects = p->objects;
+    p->response.object_count = p->plan.count;
+    p->response.bounces = bounces;
+    p->response.next = p->groups.next;
+    p->survey = p->response;
+    p->survey.survey = true;
+}
+
+// Path tracing, with what the scene says of it where it asks for that.
+static void make_integrator(struct polynomial *p, const struct polynomial_options *o) {
+    const struct object *given = p->job.scene->integrator;
+    p->path = (struct path){.max_depth = -1, .rr_depth = 5};
+    if (given->type == &integrator_path.entry)
+        p->path = *(const struct path *)given->data;
+    if (o->tail == TAIL_NONE)
+        p->path.max_depth = (int)o->bounces + 1;
+    p->integrator = (struct object){.type = &integrator_path.entry, .data = &p->path};
+    p->tracer = p->job.render.tracer;
+    p->tracer.integrator = &p->integrator;
+    p->tracer.response = &p->response.response;
+    p->tracer.spp = (p->tracer.spp + 1) / 2 * 2;
+    p->tracer.replicates = 2; // the half-sums
+}
+
+static bool scene_fits(const struct scene *s) {
+    if (s->medium_count == 0)
+        return true;
+    log_error("%s: found participating media; materials are edited in scenes without", s->path);
+    return false;
+}
+
+bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
+    struct edit_request request = {.options = o, .done = true};
+    struct job_options job = o->job;
+    job.edit_scene = edit_scene;
+    job.edit_user = &request;
+    *p = (struct polynomial){.path = {.max_depth = -1}};
+    if (!job_open(&p->job, &job))
+        return false;
+    bool done = request.done && scene_fits(p->job.scene) && edit_plan_init(&p->plan, p->job.scene);
+    if (done)
+        find_objects(p);
+    if (done && all_are_found(p) && edit_groups_init(&p->groups, &p->plan, o->series, o->bounces)) {
+        make_response(p, o->bounces);
+        make_integrator(p, o);
+        return true;
+    }
+    polynomial_close(p);
+    return false;
+}
+
+void polynomial_close(struct polynomial *p) {
+    edit_groups_finish(&p->groups);
+    edit_plan_finish(&p->plan);
+    arena_finish(&p->arena);
+    job_close(&p->job);
+}

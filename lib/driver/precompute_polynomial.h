@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Precomputing how a picture depends on its materials, with all bounces: symbolic path tracing into a
+// tensor whose coefficients stand for curves of what is seen and for products of what lights it.
+#pragma once
+
+#include "driver/edit_groups.h"
+#include "driver/job.h"
+#include "integrator/path.h"
+#include "integrator/symbolic.h"
+#include "sink/edit_sums.h"
+
+enum polynomial_tail {
+    TAIL_NONE,   // light that scatters more often is left out
+    TAIL_FROZEN, // it scatters from the materials as they are, and adds to the same coefficients
+};
+
+struct polynomial_options {
+    struct job_options job;     // scene, samples, size, ...; edit_scene is taken
+    const char *const *edit;    // materials to be made editable
+    size_t edit_count;
+    uint32_t bounces;           // scattering events that materials can be edited at
+    uint32_t series[EDIT_MOST_BOUNCES]; // most bins of a curve at each of them
+    enum polynomial_tail tail;
+    const char *output;
+    enum tensor_storage storage;
+    double most_memory;         // bytes the sums of tiles may take; 0: half of what there is
+    bool dry_run;               // only say what it would take
+    const char *command, *version;
+    void (*progress)(void *user, double done);
+    void *user;
+};
+
+struct polynomial_report {
+    uint32_t objects, groups, coefficients; // coefficients of all blocks together
+    uint64_t file_bytes, sums_bytes; // of the tensor; of the sums of tiles that are worked on
+    uint64_t samples, paths, rays, rejected;
+    double seconds;                  // spent tracing; dry run: expected
+    bool stopped;
+};
+
+// false after an error message.
+bool precompute_polynomial(const struct polynomial_options *o, struct polynomial_report *report);
+
+// ---- its parts, as tests need them --------------------------------------------------------------
+
+// A scene that is ready to be traced symbolically.
+struct polynomial {
+    struct job job;
+    struct edit_plan plan;
+    struct edit_groups groups;
+    struct symbolic response, survey;
+    struct symbolic_object *objects;
+    struct path path;          // the integrator's settings
+    struct object integrator;
+    struct tracer_options tracer;
+    struct arena arena;
+};
+
+// false after an error message, with nothing to close.
+bool polynomial_open(struct polynomial *p, const struct polynomial_options *o);
+void polynomial_close(struct polynomial *p);

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The symbolic response: surfaces whose material is to be edited answer with marks (sink/chain.h).
+//
+// What is seen first answers with the basis of its curves: for each term and each pair of functions
+// that are not zero, quotient times cosine (and texture), and where among the object's coefficients
+// that belongs. Every later editable surface is Lambertian with an albedo that is left open, so its
+// answer is the cosine over pi and a step from one group to the next; or, where the second hop has
+// curves of its own, the first of them answers with a basis again. After `bounces` scattering events
+// all surfaces answer with their materials as they are, and so do those that are never edited.
+//
+// The weight that an integrator sees is the density it draws with: its paths, and its roulette,
+// depend on nothing that can be edited, and f over the density stands in the marks.
+#pragma once
+
+#include "bsdf/bin_sampler.h"
+#include "integrator/integrator.h"
+
+struct symbolic_object {
+    const struct form *form; // its curves, over the basis of the eye's hop
+    const struct texture_ref *texture[FORM_TERMS];
+    uint32_t first[FORM_TERMS]; // place of a term's first coefficient
+    struct bin_sampler sampler;
+    const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
+};
+
+struct symbolic {
+    struct response response; // first
+    const struct symbolic_object *objects;
+    const int *object_of_shape; // CHAIN_FIXED: none
+    const bool *two_sided;      // by shape
+    uint32_t object_count;
+    uint32_t bounces;
+    const uint32_t *next; // [group][object]: the group that an albedo leads to
+    bool survey; // only finds out what is seen first
+};
+
+// Functions of a term's axis: 1 where there is no curve.
+static inline uint32_t symbolic_bins(const struct form *f, uint32_t term, enum form_slot_name slot) {
+    const struct form_slot *s = &f->term[term].slots[slot];
+    return s->gamma.kind == GAMMA_NONE ? 1 : f->curve[s->curve].f[0].table->basis.count;
+}
+
+// Coefficients of a term.
+static inline uint32_t symbolic_places(const struct form *f, uint32_t term) {
+    return symbolic_bins(f, term, SLOT_A) * symbolic_bins(f, term, SLOT_B);
+}
+
+// Fills form, first and sampler; memory from the arena. The form must outlive it.
+void symbolic_object_init(struct symbolic_object *o, const struct form *form, struct arena *arena);
+
+// Fills s->response; the rest is the caller's.
+void symbolic_init(struct symbolic *s);

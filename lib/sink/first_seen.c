@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sink/first_seen.h"
+
+#include "base/mem.h"
+
+enum { LIST_LANES = 64 };
+
+struct seen_view {
+    struct sink sink; // first
+    struct first_seen *all;
+    struct seen_tile *tile;
+    struct sink_area wanted;
+    struct {
+        size_t inside;
+        bool wanted, covered;
+    } lanes[SINK_MOST_LANES];
+    struct chain chains[SINK_MOST_LANES];
+};
+
+static void view_open(struct sink *s, uint32_t tile, struct sink_area *wanted) {
+    struct seen_view *v = (void *)s;
+    v->tile = &v->all->tiles[tile];
+    v->wanted = *wanted = tile_grid_area(&v->all->grid, tile);
+}
+
+static void view_place(struct sink *s, int lane, int x, int y, uint32_t sample) {
+    struct seen_view *v = (void *)s;
+    (void)sample;
+    v->lanes[lane].inside = tile_grid_inside(x, y);
+    v->lanes[lane].wanted = sink_area_has(&v->wanted, x, y);
+}
+
+static void view_begin(struct sink *s, int lane) {
+    struct seen_view *v = (void *)s;
+    v->lanes[lane].covered = false;
+    chain_begin(&v->chains[lane]);
+}
+
+static void view_add(struct sink *s, int lane, const struct contribution *c) {
+    (void)s, (void)lane, (void)c;
+}
+
+static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
+    (void)s, (void)lane, (void)first;
+}
+
+static void view_covered(struct sink *s, int lane) {
+    ((struct seen_view *)(void *)s)->lanes[lane].covered = true;
+}
+
+static struct seen *find_or_add(struct seen_tile *t, size_t inside, uint32_t object) {
+    uint32_t *link = &t->first[inside];
+    while (*link != SEEN_END) {
+        if (t->seen[*link].object == object)
+            return &t->seen[*link];
+        link = &t->seen[*link].next;
+    }
+    *link = (uint32_t)t->count; // before the array moves
+    mem_grow(&t->seen, &t->capacity, t->count + 1, sizeof *t->seen);
+    t->seen[t->count] = (struct seen){.object = object, .next = SEEN_END};
+    return &t->seen[t->count++];
+}
+
+static void view_end(struct sink *s, int lane, float weight) {
+    struct seen_view *v = (void *)s;
+    const struct chain *c = &v->chains[lane];
+    (void)weight;
+    if (!v->lanes[lane].wanted || !v->lanes[lane].covered)
+        return;
+    const uint32_t object = c->object == CHAIN_FIXED ? v->all->object_count - 1
+                                                     : (uint32_t)c->object;
+    struct seen *seen = find_or_add(v->tile, v->lanes[lane].inside, object);
+    seen->samples++;
+    seen->view += (double)c->view;
+}
+
+static void view_close(struct sink *s) {
+    (void)s;
+}
+
+static void view_destroy(struct sink *s) {
+    mem_free(s);
+}
+
+static const struct sink_type view_type = {
+    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin, .add = view_add,
+    .surface = view_surface, .covered = view_covered, .end = view_end, .destroy = view_destroy};
+
+struct sink *first_seen_sink(void *first_seen) {
+    struct seen_view *v = mem_array(1, sizeof *v);
+    v->sink = (struct sink){.type = &view_type, .chains = v->chains};
+    v->all = first_seen;
+    return &v->sink;
+}
+
+struct first_seen *first_seen_create(struct sink_area area, int width, uint32_t object_count) {
+    struct first_seen *f = mem_array(1, sizeof *f);
+    *f = (struct first_seen){.grid = tile_grid_over(area), .width = width,
+                             .object_count = object_count};
+    const uint32_t tiles = tile_grid_count(&f->grid);
+    f->tiles = mem_array(tiles, sizeof *f->tiles);
+    f->lists = mem_array(object_count, sizeof *f->lists);
+    for (uint32_t t = 0; t < tiles; t++)
+        for (int i = 0; i < SEEN_TILE_PIXELS; i++)
+            f->tiles[t].first[i] = SEEN_END;
+    return f;
+}
+
+void first_seen_destroy(struct first_seen *f) {
+    if (!f)
+        return;
+    for (uint32_t t = 0; t < tile_grid_count(&f->grid); t++)
+        mem_free(f->tiles[t].seen);
+    for (uint32_t o = 0; o < f->object_count; o++) {
+        mem_free(f->lists[o].pixels);
+        mem_free(f->lists[o].view);
+    }
+    mem_free(f->tiles);
+    mem_free(f->lists);
+    mem_free(f);
+}
+
+static void list_pixel(struct first_seen *f, struct seen_tile *t, int x, int y) {
+    for (uint32_t i = t->first[tile_grid_inside(x, y)]; i != SEEN_END; i = t->seen[i].next) {
+        struct seen *s = &t->seen[i];
+        struct seen_list *list = &f->lists[s->object];
+        s->at = (uint32_t)list->count;
+        list->pixels[list->count] = (uint32_t)(y * f->width + x);
+        list->view[list->count++] = (float)(s->view / s->samples);
+    }
+}
+
+void first_seen_list(struct first_seen *f) {
+    const uint32_t tiles = tile_grid_count(&f->grid);
+    uint64_t *counts = mem_array(f->object_count, sizeof *counts);
+    for (uint32_t t = 0; t < tiles; t++)
+        for (size_t i = 0; i < f->tiles[t].count; i++)
+            counts[f->tiles[t].seen[i].object]++;
+    for (uint32_t o = 0; o < f->object_count; o++) {
+        const uint64_t lanes = (counts[o] + LIST_LANES - 1) / LIST_LANES * LIST_LANES;
+        f->lists[o].pixels = mem_array(counts[o], sizeof *f->lists[o].pixels);
+        f->lists[o].view = mem_array(lanes, sizeof *f->lists[o].view);
+    }
+    for (uint32_t t = 0; t < tiles; t++) {
+        const struct sink_area a = tile_grid_area(&f->grid, t);
+        for (int y = a.y0; y < a.y1; y++)
+            for (int x = a.x0; x < a.x1; x++)
+                list_pixel(f, &f->tiles[t], x, y);
+    }
+    mem_free(counts);
+}
