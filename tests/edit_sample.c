@@ -177,12 +177,12 @@ static double value_at(const struct tensor_block *t, uint64_t pixel, uint32_t co
                                     : (double)bf16_to_float(((const uint16_t *)t->values)[i]);
 }
 
-static double curve_of(const struct edit_object *o, const struct form_slot *s, uint32_t channel,
+static double curve_of(const struct edited_object *o, const struct form_slot *s, uint32_t channel,
                        uint32_t bin) {
     return s->gamma.kind == GAMMA_NONE ? 1 : curve_values(o->curve[s->curve], channel)[bin];
 }
 
-static uint32_t bins_of(const struct edit_object *o, const struct form_slot *s) {
+static uint32_t bins_of(const struct edited_object *o, const struct form_slot *s) {
     return s->gamma.kind == GAMMA_NONE ? 1 : o->curve[s->curve]->basis.count;
 }
 
@@ -199,8 +199,8 @@ static double group_of(const struct edit_tensor *e, uint32_t group, uint32_t cha
 static double pixel_of(const struct edit_tensor *e, const double (*groups)[3], uint32_t block,
                        uint64_t pixel, uint32_t channel) {
     const struct tensor_block *t = &e->tensor->blocks[block];
-    const struct edit_block *own = &e->blocks[block];
-    const struct edit_object *o = own->object == EDIT_NONE ? NULL : &e->objects[own->object];
+    const struct edited_block *own = &e->blocks[block];
+    const struct edited_object *o = own->object == EDIT_NOTHING ? NULL : &e->objects[own->object];
     const struct form_term *term = o ? &o->form.term[own->term] : NULL;
     const uint32_t rows = o ? bins_of(o, &term->slots[SLOT_A]) : 1;
     const uint32_t columns = o ? bins_of(o, &term->slots[SLOT_B]) : 1;

@@ -10,7 +10,7 @@
 
 struct edit {
     struct edit_tensor objects;
-    struct edit_options options;
+    struct edit_settings options;
     struct edit_stage whole, rest; // the tensor, and what a focus leaves of it
     struct edit_focus focus;
     bool focused;
@@ -38,7 +38,7 @@ static void make_room(struct edit *e) {
     e->pixel_curve = mem_array(n, sizeof *e->pixel_curve);
 }
 
-struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_options *o) {
+struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_settings *o) {
     struct edit *e = mem_array(1, sizeof *e);
     e->options = *o;
     const struct replay_options replay = replay_options_of(e);
@@ -115,12 +115,8 @@ static bool reaches_weights(const struct edit_tensor *o, const struct edit_touch
 }
 
 bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const char *at) {
-    static bool (*const change[])(struct edit_tensor *, const char *, const char *,
-                                  struct edit_touch *) = {
-        [EDIT_SET] = edit_set, [EDIT_CURVE] = edit_load_curve, [EDIT_OPERATE] = edit_operate,
-        [EDIT_RESET] = edit_reset};
     struct edit_touch t;
-    if (!change[kind](&e->objects, text, at, &t))
+    if (!edit_apply(&e->objects, kind, text, at, &t))
         return false;
     if (!reaches_weights(&e->objects, &t))
         return true;
@@ -199,7 +195,7 @@ static bool move_focus(struct edit *e, uint32_t object, uint32_t curve) {
 // The focus goes to what was touched since the last frame, if that is one curve.
 static bool choose_focus(struct edit *e) {
     const bool same = e->focused && e->focus.object == e->touch.object &&
-                      (e->focus.curve == e->touch.curve || e->touch.curve == EDIT_NONE);
+                      (e->focus.curve == e->touch.curve || e->touch.curve == EDIT_NOTHING);
     bool good = true;
     if (!e->options.focus || !e->touched)
         return true;
@@ -213,7 +209,7 @@ static bool choose_focus(struct edit *e) {
 
 // ---- frames -------------------------------------------------------------------------------------
 
-static void value_groups(struct edit *e, const struct edit_group *groups, uint32_t count) {
+static void value_groups(struct edit *e, const struct edited_group *groups, uint32_t count) {
     for (uint32_t g = 0; g < count; g++)
         edit_group_value(&groups[g], (const double(*)[CURVE_CHANNELS])e->factors, NULL, e->groups[g]);
 }
@@ -239,8 +235,8 @@ static bool follow(struct edit *e, struct edit_stage *s) {
 // f_o of a block's pixels, where its curve changed.
 static void update_pixels(struct edit *e, uint32_t block) {
     const struct edit_tensor *o = &e->objects;
-    const struct edit_block *b = &o->blocks[block];
-    const struct form_term *t = b->object == EDIT_NONE
+    const struct edited_block *b = &o->blocks[block];
+    const struct form_term *t = b->object == EDIT_NOTHING
                                     ? NULL : &o->objects[b->object].form.term[b->term];
     if (!t || !edit_has_slot(t, SLOT_O) || o->tensor->blocks[block].pixel_count == 0)
         return;
@@ -271,15 +267,30 @@ static struct replay_factors factors_of(const struct edit *e) {
     return (struct replay_factors){e->scale, (const float *const *)e->pixel};
 }
 
-bool edit_frame(struct edit *e, float *frame) {
-    const struct replay_factors factors = factors_of(e);
+bool edit_follow(struct edit *e) {
     value_factors(e);
     if (!choose_focus(e))
         return false;
     struct edit_stage *s = e->focused ? &e->rest : &e->whole;
     value_groups(e, e->focused ? e->focus.powers : e->objects.groups,
                  e->focused ? e->focus.power_count : e->objects.group_count);
-    return follow(e, s) && replay_frame(s->replay, &factors, frame);
+    return follow(e, s) && replay_wait(s->replay);
+}
+
+bool edit_compose(struct edit *e, float *frame) {
+    const struct replay_factors factors = factors_of(e);
+    return replay_frame(e->focused ? e->rest.replay : e->whole.replay, &factors, frame);
+}
+
+bool edit_frame(struct edit *e, float *frame) {
+    return edit_follow(e) && edit_compose(e, frame);
+}
+
+bool edit_settle(struct edit *e, float *frame) {
+    bool good = edit_follow(e);
+    while (good && !edit_is_exact(e))
+        good = edit_follow(e);
+    return good && edit_compose(e, frame);
 }
 
 void edit_variance(struct edit *e, float *variance) {

@@ -12,7 +12,7 @@
 
 struct edit;
 
-struct edit_options {
+struct edit_settings {
     bool no_device;     // only the C twins
     int threads;        // 0: default
     size_t most_memory; // as struct replay_options has it
@@ -21,19 +21,22 @@ struct edit_options {
 };
 
 // The tensor must outlive it; path is for messages. NULL after an error message.
-struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_options *o);
+struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_settings *o);
 void edit_destroy(struct edit *e); // NULL is fine
 
 struct edit_tensor *edit_objects(struct edit *e); // to be looked at
 const char *edit_device(const struct edit *e);
-
-enum edit_kind { EDIT_SET, EDIT_CURVE, EDIT_OPERATE, EDIT_RESET };
 
 // A change as replay/edit_change.h has it. false after an error message.
 bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const char *at);
 
 // The picture of the objects as they are, three planes. false after an error message.
 bool edit_frame(struct edit *e, float *frame);
+// The two halves of a frame: sums, waited for; and the picture of the sums.
+bool edit_follow(struct edit *e);
+bool edit_compose(struct edit *e, float *frame);
+// Frames until one is exact.
+bool edit_settle(struct edit *e, float *frame);
 // Whether the last frame was exact; with `terms` it may lag behind.
 bool edit_is_exact(const struct edit *e);
 // Asks for the next frame to be made anew, all of it.

@@ -59,7 +59,7 @@ static bool no_object(const struct edit_tensor *e, const char *text, const char 
     return false;
 }
 
-static bool no_term(const struct edit_object *o, const char *name, const char *at) {
+static bool no_term(const struct edited_object *o, const char *name, const char *at) {
     char known[300] = "";
     size_t used = 0;
     for (uint32_t t = 0; t < o->form.terms && used < sizeof known; t++)
@@ -69,7 +69,7 @@ static bool no_term(const struct edit_object *o, const char *name, const char *a
 }
 
 struct place {
-    struct edit_object *object;
+    struct edited_object *object;
     uint32_t object_index, curve;
     unsigned channels;
 };
@@ -117,8 +117,8 @@ static bool find_place(struct edit_tensor *e, const char *text, const char *end,
 
 // ---- curves -------------------------------------------------------------------------------------
 
-bool edit_load_curve(struct edit_tensor *e, const char *text, const char *at,
-                     struct edit_touch *touch) {
+static bool load_curve(struct edit_tensor *e, const char *text, const char *at,
+                       struct edit_touch *touch) {
     const char *equals = strchr(text, '=');
     struct arena arena = {0};
     struct curve file;
@@ -143,8 +143,8 @@ bool edit_load_curve(struct edit_tensor *e, const char *text, const char *at,
     return good;
 }
 
-bool edit_operate(struct edit_tensor *e, const char *text, const char *at,
-                  struct edit_touch *touch) {
+static bool operate(struct edit_tensor *e, const char *text, const char *at,
+                    struct edit_touch *touch) {
     const char *colon = strchr(text, ':');
     struct curve_operator operators[MOST_OPERATORS];
     uint32_t count;
@@ -162,7 +162,7 @@ bool edit_operate(struct edit_tensor *e, const char *text, const char *at,
 static const double none[CURVE_CHANNELS];
 
 // The model's form. A diffuse term that is there stays when its reflectance becomes 0.
-static bool make_form(const struct edit_object *o, const struct model_parameters *p,
+static bool make_form(const struct edited_object *o, const struct model_parameters *p,
                       struct arena *arena, struct form *f, const char *at) {
     uint32_t term;
     struct model_parameters q = *p;
@@ -198,7 +198,7 @@ static bool same_formula(const struct form_curve *a, const struct form_curve *b)
 }
 
 // What differs between two makes of the model goes into the object.
-static void take_over(struct edit_object *o, const struct form *before, const struct form *after,
+static void take_over(struct edited_object *o, const struct form *before, const struct form *after,
                       struct edit_touch *touch) {
     for (uint32_t t = 0; t < after->terms; t++)
         for (int k = 0; k < CURVE_CHANNELS; k++)
@@ -209,12 +209,12 @@ static void take_over(struct edit_object *o, const struct form *before, const st
             continue;
         for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
             function_project(o->curve[c], k, &after->curve[c].f[k], form_filter(&o->form, c));
-        touch->several = touch->curve != EDIT_NONE;
+        touch->several = touch->curve != EDIT_NOTHING;
         touch->curve = c;
     }
 }
 
-static bool regenerate(struct edit_object *o, const struct model_parameters *p, const char *name,
+static bool regenerate(struct edited_object *o, const struct model_parameters *p, const char *name,
                        const char *at, struct edit_touch *touch) {
     struct arena arena = {0};
     struct form before, after;
@@ -248,30 +248,30 @@ static bool set_scale(struct form_term *t, const char *text, const char *at) {
     return true;
 }
 
-// Of "TERM.PARAM" or "PARAM": the parameter, and the term if there is one (else EDIT_NONE).
-static const char *split_term(const struct edit_object *o, const char *text, uint32_t *term) {
+// Of "TERM.PARAM" or "PARAM": the parameter, and the term if there is one (else EDIT_NOTHING).
+static const char *split_term(const struct edited_object *o, const char *text, uint32_t *term) {
     const char *point = strrchr(text, '.');
-    *term = EDIT_NONE;
+    *term = EDIT_NOTHING;
     if (!point)
         return text;
     return find_term(&o->form, text, (size_t)(point - text), term) ? point + 1 : NULL;
 }
 
-bool edit_set(struct edit_tensor *e, const char *text, const char *at, struct edit_touch *touch) {
+static bool set(struct edit_tensor *e, const char *text, const char *at, struct edit_touch *touch) {
     char place[MOST_NAME];
     const char *equals = strchr(text, '='), *rest;
     uint32_t term;
-    *touch = (struct edit_touch){.curve = EDIT_NONE};
+    *touch = (struct edit_touch){.curve = EDIT_NOTHING};
     if (!equals || (size_t)(equals - text) >= sizeof place)
         return fail(at, "expected OBJECT.TERM.PARAM=VALUE, found", text);
     snprintf(place, sizeof place, "%.*s", (int)(equals - text), text);
     if (!find_object(e, place, strlen(place), &touch->object, &rest) || !*rest)
         return no_object(e, place, at);
-    struct edit_object *o = &e->objects[touch->object];
+    struct edited_object *o = &e->objects[touch->object];
     const char *name = split_term(o, rest, &term);
     if (!name)
         return no_term(o, rest, at);
-    if (strcmp(name, "scale") == 0 && term != EDIT_NONE)
+    if (strcmp(name, "scale") == 0 && term != EDIT_NOTHING)
         return set_scale(&o->form.term[term], equals + 1, at);
     if (!o->model)
         return fail(at, "there is no model whose numbers could be set behind", o->name);
@@ -279,15 +279,15 @@ bool edit_set(struct edit_tensor *e, const char *text, const char *at, struct ed
     return parameters_set(&p, name, equals + 1, at) && regenerate(o, &p, name, at, touch);
 }
 
-bool edit_reset(struct edit_tensor *e, const char *object, const char *at,
-                struct edit_touch *touch) {
+static bool reset(struct edit_tensor *e, const char *object, const char *at,
+                  struct edit_touch *touch) {
     const char *rest;
-    *touch = (struct edit_touch){.curve = EDIT_NONE, .several = true};
+    *touch = (struct edit_touch){.curve = EDIT_NOTHING, .several = true};
     if (!find_object(e, object, strlen(object), &touch->object, &rest) || *rest)
         return no_object(e, object, at);
     struct arena arena = {0};
     struct form f;
-    struct edit_object *o = &e->objects[touch->object];
+    struct edited_object *o = &e->objects[touch->object];
     const struct json *j = json_at(json_get(e->tensor->meta, "objects"), touch->object);
     const bool good = parameters_from_json(&o->parameters, json_get(j, "parameters"), at) &&
                       form_from_json(&f, json_get(j, "form"), &arena, at);
@@ -298,4 +298,15 @@ bool edit_reset(struct edit_tensor *e, const char *object, const char *at,
             function_project(o->curve[c], k, &f.curve[c].f[k], FILTER_MEAN);
     arena_finish(&arena);
     return good;
+}
+
+bool edit_apply(struct edit_tensor *e, enum edit_kind kind, const char *text, const char *at,
+                struct edit_touch *touch) {
+    switch (kind) {
+    case EDIT_SET: return set(e, text, at, touch);
+    case EDIT_CURVE: return load_curve(e, text, at, touch);
+    case EDIT_OPERATE: return operate(e, text, at, touch);
+    case EDIT_RESET: break;
+    }
+    return reset(e, text, at, touch);
 }

@@ -13,15 +13,14 @@
 
 #include "replay/edit_tensor.h"
 
-// What a change touched: one curve of an object; EDIT_NONE: numbers outside the curves alone.
+// What a change touched: one curve of an object; EDIT_NOTHING: numbers outside the curves alone.
 struct edit_touch {
     uint32_t object, curve;
     bool several; // more than one curve
 };
 
-// Each gives false after an error message, which names `at`, and then changes nothing.
-bool edit_set(struct edit_tensor *e, const char *text, const char *at, struct edit_touch *touch);
-bool edit_load_curve(struct edit_tensor *e, const char *text, const char *at,
-                     struct edit_touch *touch);
-bool edit_operate(struct edit_tensor *e, const char *text, const char *at, struct edit_touch *touch);
-bool edit_reset(struct edit_tensor *e, const char *object, const char *at, struct edit_touch *touch);
+enum edit_kind { EDIT_SET, EDIT_CURVE, EDIT_OPERATE, EDIT_RESET };
+
+// false after an error message that names `at`; then nothing is changed.
+bool edit_apply(struct edit_tensor *e, enum edit_kind kind, const char *text, const char *at,
+                struct edit_touch *touch);

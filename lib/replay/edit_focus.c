@@ -3,17 +3,18 @@
 
 #include <string.h>
 
+#include "base/file.h"
 #include "base/mem.h"
 
 // ---- powers -------------------------------------------------------------------------------------
 
-static bool same_group(const struct edit_group *a, const struct edit_group *b) {
+static bool same_group(const struct edited_group *a, const struct edited_group *b) {
     return a->count == b->count &&
            (a->count == 0 || memcmp(a->factors, b->factors, a->count * sizeof *a->factors) == 0);
 }
 
 // The active factors of a group, ascending.
-static struct edit_group active_part(const struct edit_focus *f, const struct edit_group *g,
+static struct edited_group active_part(const struct edit_focus *f, const struct edited_group *g,
                                      uint32_t *out) {
     uint32_t n = 0;
     for (uint32_t i = 0; i < g->count; i++) {
@@ -24,23 +25,33 @@ static struct edit_group active_part(const struct edit_focus *f, const struct ed
             out[at] = out[at - 1];
         out[at] = g->factors[i];
     }
-    return (struct edit_group){n, out};
+    return (struct edited_group){n, out};
 }
 
-static uint32_t find_power(struct edit_focus *f, const struct edit_group *g) {
-    uint32_t h = 0;
-    while (h < f->power_count && !same_group(&f->powers[h], g))
-        h++;
-    if (h == f->power_count) {
-        uint32_t *own = arena_alloc(&f->arena, (g->count + 1) * sizeof *own);
-        memcpy(own, g->factors, g->count * sizeof *own);
-        f->powers[f->power_count++] = (struct edit_group){g->count, own};
-    }
-    return h;
+// Powers by the hash of their factors.
+struct power_table {
+    uint32_t *slot; // power + 1; 0: free
+    size_t mask;
+};
+
+static uint32_t find_power(struct edit_focus *f, struct power_table *t, const struct edited_group *g) {
+    size_t at = file_hash(g->factors, g->count * sizeof *g->factors, 0) & t->mask;
+    for (; t->slot[at]; at = (at + 1) & t->mask)
+        if (same_group(&f->powers[t->slot[at] - 1], g))
+            return t->slot[at] - 1;
+    uint32_t *own = arena_alloc(&f->arena, (g->count + 1) * sizeof *own);
+    memcpy(own, g->factors, g->count * sizeof *own);
+    f->powers[f->power_count++] = (struct edited_group){g->count, own};
+    t->slot[at] = f->power_count;
+    return f->power_count - 1;
 }
 
 void edit_focus_init(struct edit_focus *f, const struct edit_tensor *e, uint32_t object,
                      uint32_t curve) {
+    struct power_table table = {.mask = 1};
+    while (table.mask < 2 * (size_t)e->group_count)
+        table.mask = 2 * table.mask + 1;
+    table.slot = mem_array(table.mask + 1, sizeof *table.slot);
     *f = (struct edit_focus){.object = object, .curve = curve};
     f->active = arena_alloc(&f->arena, (e->factor_count + 1) * sizeof *f->active);
     f->powers = arena_alloc(&f->arena, e->group_count * sizeof *f->powers);
@@ -48,10 +59,11 @@ void edit_focus_init(struct edit_focus *f, const struct edit_tensor *e, uint32_t
     for (uint32_t i = 0; i < e->factor_count; i++)
         f->active[i] = e->factors[i].object == object;
     for (uint32_t g = 0; g < e->group_count; g++) {
-        uint32_t scratch[64]; // a group has no more factors
-        const struct edit_group part = active_part(f, &e->groups[g], scratch);
-        f->power_of[g] = find_power(f, &part);
+        uint32_t scratch[EDITED_MOST_POWER + 1];
+        const struct edited_group part = active_part(f, &e->groups[g], scratch);
+        f->power_of[g] = find_power(f, &table, &part);
     }
+    mem_free(table.slot);
 }
 
 void edit_focus_finish(struct edit_focus *f) {
@@ -63,7 +75,7 @@ void edit_focus_finish(struct edit_focus *f) {
 
 unsigned edit_focus_axes(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block) {
     unsigned axes = 0;
-    if (e->blocks[block].object != f->object || f->curve == EDIT_NONE)
+    if (e->blocks[block].object != f->object || f->curve == EDIT_NOTHING)
         return 0;
     for (uint32_t i = 0; i < e->tensor->blocks[block].axis_count; i++)
         axes |= (unsigned)(edit_axis_curve(e, block, i) == f->curve) << i;

@@ -15,9 +15,9 @@
 #include "replay/tiles.h"
 
 struct edit_focus {
-    uint32_t object, curve; // curve EDIT_NONE: only numbers outside the curves change
+    uint32_t object, curve; // curve EDIT_NOTHING: only numbers outside the curves change
     uint32_t power_count;
-    struct edit_group *powers; // the factors that are left of a group
+    struct edited_group *powers; // the factors that are left of a group
     uint32_t *power_of;        // by group
     bool *active;              // by factor: of the object
     struct arena arena;

@@ -40,13 +40,13 @@ static bool read_numbers(const struct json *j, size_t n, double *out) {
 }
 
 enum form_slot_name edit_axis_slot(const struct edit_tensor *e, uint32_t block, uint32_t axis) {
-    const struct edit_block *b = &e->blocks[block];
+    const struct edited_block *b = &e->blocks[block];
     const struct form_term *t = &e->objects[b->object].form.term[b->term];
     return axis == 0 && edit_has_slot(t, SLOT_A) ? SLOT_A : SLOT_B;
 }
 
 uint32_t edit_axis_curve(const struct edit_tensor *e, uint32_t block, uint32_t axis) {
-    const struct edit_block *b = &e->blocks[block];
+    const struct edited_block *b = &e->blocks[block];
     return e->objects[b->object].form.term[b->term].slots[edit_axis_slot(e, block, axis)].curve;
 }
 
@@ -65,7 +65,7 @@ static struct curve *own_table(struct edit_tensor *e, struct form_curve *c) {
     return own;
 }
 
-static bool own_tables(struct edit_tensor *e, struct edit_object *o) {
+static bool own_tables(struct edit_tensor *e, struct edited_object *o) {
     for (uint32_t c = 0; c < o->form.curves; c++) {
         if (o->form.curve[c].f[0].kind != FUNCTION_TABLE)
             return fail(e, "object %s: the curve %s is not tabulated", o->name,
@@ -75,12 +75,12 @@ static bool own_tables(struct edit_tensor *e, struct edit_object *o) {
     return true;
 }
 
-static uint32_t bins_of(const struct edit_object *o, const struct form_term *t,
+static uint32_t bins_of(const struct edited_object *o, const struct form_term *t,
                         enum form_slot_name slot) {
     return edit_has_slot(t, slot) ? o->curve[t->slots[slot].curve]->basis.count : 1;
 }
 
-static bool read_terms(struct edit_tensor *e, struct edit_object *o, const struct json *terms) {
+static bool read_terms(struct edit_tensor *e, struct edited_object *o, const struct json *terms) {
     for (uint32_t t = 0; t < o->form.terms; t++) {
         const struct json *j = json_at(terms, t);
         const struct json *share = json_get(j, "share"), *albedo = json_get(j, "albedo");
@@ -103,7 +103,7 @@ static bool read_terms(struct edit_tensor *e, struct edit_object *o, const struc
     return true;
 }
 
-static bool read_object(struct edit_tensor *e, const struct json *j, struct edit_object *o) {
+static bool read_object(struct edit_tensor *e, const struct json *j, struct edited_object *o) {
     const char *name = json_text(json_get(j, "name")), *model = json_text(json_get(j, "model"));
     const struct json *form = json_get(j, "form");
     char at[300];
@@ -111,7 +111,7 @@ static bool read_object(struct edit_tensor *e, const struct json *j, struct edit
         return fail(e, "an object has no name or no model");
     o->name = name;
     snprintf(at, sizeof at, "%s: object %s", e->path, name);
-    for (const struct edit_object *other = e->objects; other < o; other++)
+    for (const struct edited_object *other = e->objects; other < o; other++)
         if (strcmp(other->name, name) == 0)
             return fail(e, "two objects are called %s", name);
     o->model = model_find(model);
@@ -125,7 +125,7 @@ static bool read_object(struct edit_tensor *e, const struct json *j, struct edit
 static bool read_objects(struct edit_tensor *e) {
     const struct json *objects = json_get(e->tensor->meta, "objects");
     const size_t n = json_count(objects);
-    if (!json_is_array(objects) || n > EDIT_MOST_OBJECTS)
+    if (!json_is_array(objects) || n > EDITED_MOST_OBJECTS)
         return fail(e, "its objects are not described");
     e->object_count = (uint32_t)n;
     e->objects = arena_alloc(&e->arena, (n + 1) * sizeof *e->objects);
@@ -137,13 +137,12 @@ static bool read_objects(struct edit_tensor *e) {
 
 // ---- factors and groups -------------------------------------------------------------------------
 
-static bool read_coarse(struct edit_tensor *e, const struct json *j, struct edit_factor *f) {
-    const struct edit_object *o = &e->objects[f->object];
+static bool read_coarse(struct edit_tensor *e, const struct json *j, struct edited_factor *f) {
+    const struct edited_object *o = &e->objects[f->object];
     const struct json *knots = json_get(j, "knots");
     const size_t n = json_count(knots);
     bool sound = read_index(json_get(j, "term"), o->form.terms, &f->term) && n >= 2 &&
-                 n <= BASIS_MOST && read_index(json_get(j, "bin"), (uint32_t)n - 1, &f->bin) &&
-                 edit_has_slot(&o->form.term[f->term], SLOT_A);
+                 n <= BASIS_MOST && read_index(json_get(j, "bin"), (uint32_t)n - 1, &f->bin);
     double *values = arena_alloc(&e->arena, n * sizeof *values);
     sound = sound && read_numbers(knots, n, values);
     for (size_t i = 1; i < n && sound; i++)
@@ -155,41 +154,41 @@ static bool read_coarse(struct edit_tensor *e, const struct json *j, struct edit
 static bool read_factors(struct edit_tensor *e) {
     const struct json *factors = json_get(e->tensor->meta, "factors");
     const size_t n = json_count(factors);
-    if ((factors && !json_is_array(factors)) || n > EDIT_MOST_FACTORS)
+    if ((factors && !json_is_array(factors)) || n > EDITED_MOST_FACTORS)
         return fail(e, "its factors are not described");
     e->factor_count = (uint32_t)n;
     e->factors = arena_alloc(&e->arena, (n + 1) * sizeof *e->factors);
     for (uint32_t i = 0; i < e->factor_count; i++) {
         const struct json *j = json_at(factors, i);
-        struct edit_factor *f = &e->factors[i];
-        f->term = EDIT_NONE;
+        struct edited_factor *f = &e->factors[i];
+        f->term = EDIT_NOTHING;
         if (!read_index(json_get(j, "object"), e->object_count, &f->object) ||
             (json_get(j, "term") && !read_coarse(e, j, f)))
             return fail(e, "factor %u is not described", i);
-        const struct edit_object *o = &e->objects[f->object];
+        const struct edited_object *o = &e->objects[f->object];
         for (uint32_t t = 0; t < o->form.terms; t++)
-            if (f->term == EDIT_NONE && !o->albedo[t])
+            if (f->term == EDIT_NOTHING && !o->albedo[t])
                 return fail(e, "factor %u is the albedo of %s, whose terms tell none", i, o->name);
     }
     return true;
 }
 
-static bool read_group(struct edit_tensor *e, const struct json *j, struct edit_group *g) {
+static bool read_group(struct edit_tensor *e, const struct json *j, struct edited_group *g) {
     const size_t n = json_count(j);
-    if (!json_is_array(j) || n > 64)
+    if (!json_is_array(j) || n > EDITED_MOST_POWER)
         return false;
     uint32_t *factors = arena_alloc(&e->arena, (n + 1) * sizeof *factors);
     for (size_t i = 0; i < n; i++)
         if (!read_index(json_at(j, i), e->factor_count, &factors[i]))
             return false;
-    *g = (struct edit_group){(uint32_t)n, factors};
+    *g = (struct edited_group){(uint32_t)n, factors};
     return true;
 }
 
 static bool read_groups(struct edit_tensor *e) {
     const struct json *groups = json_get(e->tensor->meta, "groups");
     const size_t n = groups ? json_count(groups) : 1;
-    if (groups && (!json_is_array(groups) || n < 1 || n > EDIT_MOST_GROUPS))
+    if (groups && (!json_is_array(groups) || n < 1 || n > EDITED_MOST_GROUPS))
         return fail(e, "its groups are not described");
     e->group_count = (uint32_t)n;
     e->groups = arena_alloc(&e->arena, n * sizeof *e->groups);
@@ -211,7 +210,7 @@ static bool find_object(const struct edit_tensor *e, const char *name, uint32_t 
 }
 
 // The block of that object and term name that comes `before`-th belongs to the term that does.
-static bool find_term(const struct edit_tensor *e, uint32_t block, struct edit_block *b) {
+static bool find_term(const struct edit_tensor *e, uint32_t block, struct edited_block *b) {
     const struct tensor_block *t = e->tensor->blocks;
     const struct form *f = &e->objects[b->object].form;
     uint32_t before = 0;
@@ -226,9 +225,9 @@ static bool find_term(const struct edit_tensor *e, uint32_t block, struct edit_b
 }
 
 static bool axes_fit(const struct edit_tensor *e, uint32_t block) {
-    const struct edit_block *own = &e->blocks[block];
+    const struct edited_block *own = &e->blocks[block];
     const struct tensor_block *b = &e->tensor->blocks[block];
-    const struct edit_object *o = &e->objects[own->object];
+    const struct edited_object *o = &e->objects[own->object];
     const struct form_term *t = &o->form.term[own->term];
     const uint32_t axes = edit_has_slot(t, SLOT_A) + (uint32_t)edit_has_slot(t, SLOT_B);
     if (b->axis_count != axes)
@@ -250,7 +249,7 @@ static bool read_blocks(struct edit_tensor *e) {
     e->blocks = arena_alloc(&e->arena, (e->tensor->block_count + 1) * sizeof *e->blocks);
     for (uint32_t i = 0; i < e->tensor->block_count; i++) {
         const struct tensor_block *b = &e->tensor->blocks[i];
-        e->blocks[i] = (struct edit_block){EDIT_NONE, EDIT_NONE};
+        e->blocks[i] = (struct edited_block){EDIT_NOTHING, EDIT_NOTHING};
         if (b->groups > e->group_count)
             return fail(e, "block %u has %u groups, the tensor %u", i, b->groups, e->group_count);
         if (!b->object[0] && b->axis_count == 0)

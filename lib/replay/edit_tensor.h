@@ -16,7 +16,8 @@
 //                  "form" (curve/form_json.h)}, ...]; terms of the form may hold
 //                  "share": [r, g, b], the mean of a term's texture (absent: 1),
 //                  "albedo": e_j, [bin A][bin B][channel] in a row
-//     "factors"  [{"object": i} | {"object": i, "term": t, "bin": k, "knots": [...]}, ...]
+//     "factors"  [{"object": i} | {"object": i, "term": t, "bin": k, "knots": [...]}, ...], the
+//                coarse bins being over the first axis that has several
 //     "groups"   [[indices of factors], ...]; absent: one group without factors
 //
 // Texts that name a place are "OBJECT.TERM.f_A"; where several terms of an object have the same name,
@@ -26,10 +27,12 @@
 #include "curve/model.h"
 #include "transport/tensor.h"
 
-enum { EDIT_NONE = UINT32_MAX, EDIT_MOST_OBJECTS = 4096, EDIT_MOST_FACTORS = 1 << 14,
-       EDIT_MOST_GROUPS = 1 << 14 };
+#define EDIT_NOTHING UINT32_MAX
 
-struct edit_object {
+enum { EDITED_MOST_OBJECTS = 4096, EDITED_MOST_FACTORS = 1 << 16, EDITED_MOST_GROUPS = 1 << 20,
+       EDITED_MOST_POWER = 64 }; // factors of a group
+
+struct edited_object {
     const char *name;
     const struct model *model;          // generator of the first terms; NULL: none
     struct model_parameters parameters; // that it was last asked for
@@ -39,17 +42,17 @@ struct edit_object {
     const double *albedo[FORM_TERMS];   // NULL: not known
 };
 
-struct edit_block {
-    uint32_t object, term; // EDIT_NONE: of no object
+struct edited_block {
+    uint32_t object, term; // EDIT_NOTHING: of no object
 };
 
-struct edit_factor {
+struct edited_factor {
     uint32_t object;
-    uint32_t term, bin;  // of a coarse curve; term EDIT_NONE: the object's equivalent albedo
+    uint32_t term, bin;  // of a coarse curve; term EDIT_NOTHING: the object's equivalent albedo
     const double *knots; // of the coarse curve
 };
 
-struct edit_group {
+struct edited_group {
     uint32_t count;
     const uint32_t *factors;
 };
@@ -58,10 +61,10 @@ struct edit_tensor {
     const struct tensor *tensor;
     const char *path;
     uint32_t object_count, factor_count, group_count;
-    struct edit_object *objects;
-    struct edit_block *blocks; // as many as the tensor has
-    struct edit_factor *factors;
-    struct edit_group *groups;
+    struct edited_object *objects;
+    struct edited_block *blocks; // as many as the tensor has
+    struct edited_factor *factors;
+    struct edited_group *groups;
     struct arena arena;
 };
 

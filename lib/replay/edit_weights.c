@@ -4,8 +4,8 @@
 #include <math.h>
 
 static const struct form_term *term_of(const struct edit_tensor *e, uint32_t block) {
-    const struct edit_block *b = &e->blocks[block];
-    return b->object == EDIT_NONE ? NULL : &e->objects[b->object].form.term[b->term];
+    const struct edited_block *b = &e->blocks[block];
+    return b->object == EDIT_NOTHING ? NULL : &e->objects[b->object].form.term[b->term];
 }
 
 void edit_scale(const struct edit_tensor *e, uint32_t block, float scale[CURVE_CHANNELS]) {
@@ -49,7 +49,7 @@ static double view_mean(const struct curve *c, uint32_t channel) {
     return sum / all;
 }
 
-static void outer_value(const struct edit_object *o, uint32_t term, double value[CURVE_CHANNELS]) {
+static void outer_value(const struct edited_object *o, uint32_t term, double value[CURVE_CHANNELS]) {
     const struct form_term *t = &o->form.term[term];
     for (uint32_t k = 0; k < CURVE_CHANNELS; k++) {
         value[k] = t->scale[k];
@@ -58,13 +58,13 @@ static void outer_value(const struct edit_object *o, uint32_t term, double value
     }
 }
 
-static const struct curve *curve_in(const struct edit_object *o, const struct form_term *t,
+static const struct curve *curve_in(const struct edited_object *o, const struct form_term *t,
                                     enum form_slot_name slot) {
     return edit_has_slot(t, slot) ? o->curve[t->slots[slot].curve] : NULL;
 }
 
 // sum_{j,k} cA_j cB_k e[j][k]
-static double curves_albedo(const struct edit_object *o, uint32_t term, uint32_t channel) {
+static double curves_albedo(const struct edited_object *o, uint32_t term, uint32_t channel) {
     const struct form_term *t = &o->form.term[term];
     const struct curve *a = curve_in(o, t, SLOT_A), *b = curve_in(o, t, SLOT_B);
     const uint32_t rows = a ? a->basis.count : 1, columns = b ? b->basis.count : 1;
@@ -76,7 +76,7 @@ static double curves_albedo(const struct edit_object *o, uint32_t term, uint32_t
     return sum;
 }
 
-static void albedo_value(const struct edit_object *o, double value[CURVE_CHANNELS]) {
+static void albedo_value(const struct edited_object *o, double value[CURVE_CHANNELS]) {
     for (int k = 0; k < CURVE_CHANNELS; k++)
         value[k] = 0;
     for (uint32_t t = 0; t < o->form.terms; t++) {
@@ -98,33 +98,35 @@ static void support(const struct basis *b, uint32_t j, double *lo, double *hi) {
     *hi = j + 1 < b->count ? 0.5 * (b->knots[j] + b->knots[j + 1]) : b->knots[j];
 }
 
-static double coarse_mean(const struct edit_object *o, const struct edit_factor *f,
+// Mean over a bin of the first axis, and all of the other, of the curves' product, with e as weights.
+static double coarse_mean(const struct edited_object *o, const struct edited_factor *f,
                           uint32_t channel) {
     const struct form_term *t = &o->form.term[f->term];
     const struct curve *a = curve_in(o, t, SLOT_A), *b = curve_in(o, t, SLOT_B);
-    const uint32_t columns = b ? b->basis.count : 1;
-    double sum = 0, all = 0, plain = 0, width = 0;
-    for (uint32_t j = 0; j < a->basis.count; j++) {
-        double lo, hi, e = 0;
-        support(&a->basis, j, &lo, &hi);
-        const double over = fmin(hi, f->knots[f->bin + 1]) - fmax(lo, f->knots[f->bin]);
-        if (!(over > 0))
-            continue;
-        for (uint32_t k = 0; k < columns && o->albedo[f->term]; k++)
-            e += (b ? curve_values(b, channel)[k] : 1) *
-                 o->albedo[f->term][((size_t)j * columns + k) * CURVE_CHANNELS + channel];
-        sum += over / (hi - lo) * e * curve_values(a, channel)[j];
-        all += over / (hi - lo) * e;
-        plain += over * curve_values(a, channel)[j];
-        width += over;
-    }
-    return all > 0 ? sum / all : width > 0 ? plain / width : 0;
+    const uint32_t rows = a ? a->basis.count : 1, columns = b ? b->basis.count : 1;
+    const struct curve *first = rows > 1 ? a : b;
+    double sum = 0, all = 0;
+    for (uint32_t j = 0; j < rows; j++)
+        for (uint32_t k = 0; k < columns; k++) {
+            double lo = 0, hi = 1, over = 1;
+            if (rows > 1 || columns > 1) {
+                support(&first->basis, rows > 1 ? j : k, &lo, &hi);
+                over = fmin(hi, f->knots[f->bin + 1]) - fmax(lo, f->knots[f->bin]);
+            }
+            if (!(over > 0))
+                continue;
+            const size_t at = ((size_t)j * columns + k) * CURVE_CHANNELS + channel;
+            const double e = over / (hi - lo) * (o->albedo[f->term] ? o->albedo[f->term][at] : 1);
+            sum += e * (a ? curve_values(a, channel)[j] : 1) * (b ? curve_values(b, channel)[k] : 1);
+            all += e;
+        }
+    return all > 0 ? sum / all : 0;
 }
 
-void edit_factor_value(const struct edit_tensor *e, const struct edit_factor *f,
+void edit_factor_value(const struct edit_tensor *e, const struct edited_factor *f,
                        double value[CURVE_CHANNELS]) {
-    const struct edit_object *o = &e->objects[f->object];
-    if (f->term == EDIT_NONE) {
+    const struct edited_object *o = &e->objects[f->object];
+    if (f->term == EDIT_NOTHING) {
         albedo_value(o, value);
         return;
     }
@@ -133,7 +135,7 @@ void edit_factor_value(const struct edit_tensor *e, const struct edit_factor *f,
         value[k] *= coarse_mean(o, f, k);
 }
 
-void edit_group_value(const struct edit_group *g, const double (*values)[CURVE_CHANNELS],
+void edit_group_value(const struct edited_group *g, const double (*values)[CURVE_CHANNELS],
                       const bool *with, double product[CURVE_CHANNELS]) {
     for (int k = 0; k < CURVE_CHANNELS; k++)
         product[k] = 1;
@@ -147,7 +149,7 @@ void edit_group_value(const struct edit_group *g, const double (*values)[CURVE_C
 void edit_weights(const struct edit_tensor *e, uint32_t block,
                   const double (*groups)[CURVE_CHANNELS], uint32_t group_count, unsigned axes,
                   double *weights) {
-    const struct edit_block *own = &e->blocks[block];
+    const struct edited_block *own = &e->blocks[block];
     const struct tensor_block *b = &e->tensor->blocks[block];
     const struct curve *c[TENSOR_MOST_AXES] = {NULL, NULL};
     uint32_t bins[TENSOR_MOST_AXES] = {1, 1};

@@ -17,11 +17,11 @@ bool edit_view_factor(const struct edit_tensor *e, uint32_t block, float *factor
 // (Ben-Artzi 2007, eq. 5.21 to 5.25), mean(f_o) being that over the cosine; or the coefficient of a
 // coarse curve, f_q mean(f_o) times the mean of the curve over the bin with e as weights, which
 // keeps the albedo.
-void edit_factor_value(const struct edit_tensor *e, const struct edit_factor *f,
+void edit_factor_value(const struct edit_tensor *e, const struct edited_factor *f,
                        double value[CURVE_CHANNELS]);
 
 // The product of a group's factors, those that `with` says (NULL: all); values[factor][channel].
-void edit_group_value(const struct edit_group *g, const double (*values)[CURVE_CHANNELS],
+void edit_group_value(const struct edited_group *g, const double (*values)[CURVE_CHANNELS],
                       const bool *with, double product[CURVE_CHANNELS]);
 
 // weights[group][bin A][bin B][channel] of a block: the products of groups times the curves of the

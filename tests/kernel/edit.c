@@ -52,7 +52,7 @@ static void change(struct edit *e, struct rng *r) {
 
 // The same edits in sessions of different kinds; A9: switching back and forth, A16: freezing.
 static void all_ways_agree(const struct sample_options *o, const char *what) {
-    static const struct edit_options ways[] = {
+    static const struct edit_settings ways[] = {
         {.no_device = true, .threads = 2}, {.threads = 2}, {.threads = 2, .most_memory = 100000},
         {.no_device = true, .threads = 2, .focus = true}, {.threads = 2, .focus = true},
         {.threads = 2, .focus = true, .terms = 1000},
@@ -94,7 +94,7 @@ static void black_comes_back(void) {
     const struct sample_options o = {.polynomial = true};
     struct arena arena = {0};
     const struct tensor t = sample_make(&o, &arena);
-    struct edit *e = edit_create(&t, "test", &(struct edit_options){.no_device = true, .focus = true});
+    struct edit *e = edit_create(&t, "test", &(struct edit_settings){.no_device = true, .focus = true});
     static float before[3 * PIXELS], after[3 * PIXELS];
     CHECK(edit_change(e, EDIT_OPERATE, "cup.specular.f_A:amplify-y,0,0,90,90,1", "test"));
     CHECK(edit_frame(e, before));
@@ -116,7 +116,7 @@ static void updates_follow(void) {
     const struct sample_options o = {.bins = 256};
     struct arena arena = {0};
     const struct tensor t = sample_make(&o, &arena);
-    struct edit *e = edit_create(&t, "test", &(struct edit_options){.no_device = true, .focus = true,
+    struct edit *e = edit_create(&t, "test", &(struct edit_settings){.no_device = true, .focus = true,
                                                                     .terms = 30});
     static float frame[3 * PIXELS];
     CHECK(edit_change(e, EDIT_OPERATE, "cup.specular.f_A:amplify-y,0,0,90,90,1", "test") &&
@@ -174,7 +174,7 @@ static void freezing_leaves_little(void) {
     CHECK(edit_focus_coefficients(&f, &e, 0) == 3 * 8 && edit_focus_axes(&f, &e, 0) == 2);
     CHECK(edit_focus_coefficients(&f, &e, 1) == 3 && edit_focus_coefficients(&f, &e, 3) == 3);
     edit_focus_finish(&f);
-    edit_focus_init(&f, &e, 1, EDIT_NONE);
+    edit_focus_init(&f, &e, 1, EDIT_NOTHING);
     CHECK(f.power_count == 3 && edit_focus_coefficients(&f, &e, 0) == 3); // 1, d, and d times another
     edit_focus_finish(&f);
     edit_tensor_finish(&e);
@@ -198,7 +198,7 @@ static void wrong_changes_are_refused(void) {
     const struct sample_options o = {.polynomial = false};
     struct arena arena = {0};
     const struct tensor t = sample_make(&o, &arena);
-    struct edit *e = edit_create(&t, "test", &(struct edit_options){.no_device = true});
+    struct edit *e = edit_create(&t, "test", &(struct edit_settings){.no_device = true});
     static float before[3 * PIXELS], after[3 * PIXELS];
     CHECK(edit_frame(e, before));
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {

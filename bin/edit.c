@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// relume edit: a picture with other materials, from a tensor.
+#include <stdio.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+#include "base/thread.h"
+#include "replay/edit_list.h"
+#include "replay/edit_script.h"
+#include "replay/measure.h"
+#include "replay/picture.h"
+#include "replay_report.h"
+#include "subcommand.h"
+
+struct values {
+    const char *tensor, *script;
+    struct replay_values common;
+    int terms;
+    bool list;
+    struct option_list changes[4]; // by enum edit_kind
+};
+
+#define AT(member) offsetof(struct values, member)
+
+static const struct option_argument arguments[] = {
+    {"T", AT(tensor), "tensor of `relume precompute edit`", false, false},
+    {.name = NULL},
+};
+
+static const struct option_spec options[] = {
+    {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(common.output),
+     .argument = "OUT.exr", .help = "the picture to write"},
+    {.name = "list", .type = OPTION_FLAG, .offset = AT(list),
+     .help = "print what can be edited: objects, terms, numbers and curves"},
+    {.name = "set", .letter = 's', .type = OPTION_TEXTS, .offset = AT(changes[EDIT_SET]),
+     .argument = "OBJECT.PARAM=V", .help = "a number of an object's model: its curves are made anew.\n"
+     "OBJECT.TERM.scale=V is a term's factor. V: a number or R,G,B"},
+    {.name = "curve", .letter = 'c', .type = OPTION_TEXTS, .offset = AT(changes[EDIT_CURVE]),
+     .argument = "OBJECT.TERM.f_A=FILE.csv", .help = "a curve from a file; f_A.rg: these channels only"},
+    {.name = "op", .type = OPTION_TEXTS, .offset = AT(changes[EDIT_OPERATE]),
+     .argument = "OBJECT.TERM.f_A:OPERATORS", .help = "change a curve in place (see below)"},
+    {.name = "script", .type = OPTION_TEXT, .offset = AT(script), .argument = "EDITS.json",
+     .help = "play an editing session after these (see below)"},
+    {.name = "terms", .type = OPTION_INT, .offset = AT(terms), .argument = "N", .min = 0,
+     .max = 1 << 28, .def = "0",
+     .help = "of a session: most coefficients a frame may change; 0: as the script says"},
+    REPLAY_OPTIONS(struct values, common),
+    OPTION_END,
+};
+
+static void more_help(void) {
+    printf(
+        "\nOperators on curves (angles in degrees, full effect from b to c, none outside a to d):\n"
+        "  amplify-y,a,b,c,d,FACTOR[,BASE]   translate-y,a,b,c,d,WAY   values\n"
+        "  amplify-x,a,b,c,d,FACTOR[,BASE]   translate-x,a,b,c,d,WAY   angles\n"
+        "  several are separated by `;`\n"
+        "\nA session, EDITS.json:\n"
+        "  {\"focus\": true, \"terms\": 30,\n"
+        "   \"steps\": [{\"set\": \"cup.exponent=40\", \"write\": true},\n"
+        "             {\"op\": [\"cup.specular.f_A:amplify-y,0,5,10,20,1.5\"], \"frames\": 5},\n"
+        "             {\"curve\": \"cup.specular.f_A=lobe.csv\", \"settle\": true},\n"
+        "             {\"reset\": \"cup\"}]}\n"
+        "  A step makes its changes, then `frames` pictures (1); with `settle` until they are exact.\n"
+        "  `write`: the last one goes to OUT.0001.exr, with the number of the step. `focus` freezes\n"
+        "  what is not edited, `terms` is the most coefficients a frame may change (0: all).\n");
+}
+
+// ---- sessions -----------------------------------------------------------------------------------
+
+struct session {
+    const struct values *v;
+    const char *command;
+    const struct tensor *tensor;
+    struct json *frames;
+    size_t count;
+};
+
+static bool write_numbered(const struct session *s, size_t step, const float *frame) {
+    char path[4096];
+    const char *output = s->v->common.output, *point = strrchr(output, '.');
+    const int stem = point && !strchr(point, '/') ? (int)(point - output) : (int)strlen(output);
+    if (snprintf(path, sizeof path, "%.*s.%04zu%s", stem, output, step + 1, output + stem) >=
+        (int)sizeof path) {
+        log_error("%s: name is too long", output);
+        return false;
+    }
+    return picture_write(path, s->tensor, frame, NULL, s->command, RELUME_VERSION);
+}
+
+static bool on_frame(void *user, const struct edit_step *step, const struct edit_timing *t,
+                     const float *frame) {
+    struct session *s = user;
+    struct json *j = json_append_object(s->frames);
+    s->count++;
+    json_add_count(j, "step", (int64_t)t->step + 1);
+    json_add_count(j, "frame", t->frame + 1);
+    json_add_number(j, "change_seconds", t->change_seconds);
+    json_add_number(j, "switch_seconds", t->switch_seconds);
+    json_add_number(j, "frame_seconds", t->frame_seconds);
+    json_add_count(j, "coefficients", (int64_t)t->coefficients);
+    json_add_count(j, "bytes", (int64_t)t->bytes);
+    json_add_bool(j, "exact", t->exact);
+    if (!s->v->common.quiet && !s->v->common.json)
+        log_info("step %zu frame %u: change %.1f ms, switch %.1f ms, frame %.2f ms, %llu coefficients%s",
+                 t->step + 1, t->frame + 1, t->change_seconds * 1e3, t->switch_seconds * 1e3,
+                 t->frame_seconds * 1e3, (unsigned long long)t->coefficients,
+                 t->exact ? "" : ", not exact yet");
+    const bool last = step->settle ? t->exact && t->frame + 1 >= step->frames
+                                   : t->frame + 1 == step->frames;
+    return !step->write || !last || write_numbered(s, t->step, frame);
+}
+
+// ---- pictures -----------------------------------------------------------------------------------
+
+struct evaluation {
+    struct edit *edit;
+    float *frame;
+};
+
+static bool product(void *ctx) {
+    struct evaluation *e = ctx;
+    edit_forget(e->edit);
+    return edit_follow(e->edit);
+}
+
+static bool compose(void *ctx) {
+    struct evaluation *e = ctx;
+    return edit_compose(e->edit, e->frame);
+}
+
+static bool make_picture(const struct session *s, struct evaluation *e, struct replay_timing *t,
+                         float *variance) {
+    const struct replay_values *c = &s->v->common;
+    const double start = time_seconds();
+    if (!edit_settle(e->edit, e->frame))
+        return false;
+    t->first = time_seconds() - start;
+    t->device = edit_device(e->edit);
+    replay_count(s->tensor, t);
+    if (c->time && !replay_measure(&(struct replay_measured){product, compose, e}, t))
+        return false;
+    t->bytes = edit_last_cost(e->edit).bytes;
+    edit_variance(e->edit, variance);
+    t->noise = measure_noise(s->tensor, e->frame, variance);
+    return picture_write(c->output, s->tensor, e->frame, c->variance ? variance : NULL, s->command,
+                         RELUME_VERSION);
+}
+
+static bool change_all(const struct values *v, struct edit *e) {
+    static const struct {
+        enum edit_kind kind;
+        const char *at;
+    } order[] = {{EDIT_SET, "--set"}, {EDIT_CURVE, "--curve"}, {EDIT_OPERATE, "--op"}};
+    bool good = true;
+    for (int k = 0; k < 3; k++)
+        for (size_t i = 0; i < v->changes[order[k].kind].count && good; i++)
+            good = edit_change(e, order[k].kind, v->changes[order[k].kind].items[i], order[k].at);
+    return good;
+}
+
+static bool evaluate(struct session *s, const struct edit_script *script, struct json *out) {
+    const struct values *v = s->v;
+    const size_t plane = (size_t)s->tensor->width * s->tensor->height;
+    const struct edit_settings o = {
+        .no_device = v->common.no_device, .threads = v->common.threads, .focus = script->focus,
+        .terms = v->terms ? (uint32_t)v->terms : script->terms};
+    struct edit *e = edit_create(s->tensor, v->tensor, &o);
+    float *frame = mem_array(3 * plane, sizeof *frame), *variance = mem_array(plane, sizeof *frame);
+    struct replay_timing timing = {0};
+    struct evaluation evaluation = {e, frame};
+    bool good = e && change_all(v, e) &&
+                edit_script_play(script, e, v->script, frame, on_frame, s);
+    good = good && (!v->common.output || make_picture(s, &evaluation, &timing, variance));
+    if (good && v->common.output)
+        replay_report(&v->common, &timing, out);
+    edit_destroy(e);
+    mem_free(frame);
+    mem_free(variance);
+    return good;
+}
+
+// ---- all ----------------------------------------------------------------------------------------
+
+static bool list(const struct values *v, const struct tensor *t, struct json *out) {
+    struct edit_tensor e;
+    if (!edit_tensor_init(&e, t, v->tensor))
+        return false;
+    if (v->common.json)
+        edit_list(&e, out);
+    else
+        edit_list_print(&e);
+    edit_tensor_finish(&e);
+    return true;
+}
+
+static bool edit_file(const struct values *v, const char *command, const struct tensor *t) {
+    struct json *out = json_new_object();
+    struct session s = {v, command, t, json_new_array(), 0};
+    struct edit_script script = {0};
+    bool good = v->list ? list(v, t, out) : !v->script || edit_script_read(&script, v->script);
+    good = good && (v->list || evaluate(&s, &script, out));
+    for (size_t i = 0; i < s.count && good && v->common.json; i++)
+        json_print(json_at(s.frames, i), false);
+    if (good && v->common.json)
+        json_print(out, false);
+    edit_script_finish(&script);
+    json_destroy(s.frames);
+    json_destroy(out);
+    return good;
+}
+
+static int run(const void *values, const char *command) {
+    const struct values *v = values;
+    if (!v->list && !v->script && !v->common.output) {
+        log_error("edit: expected --list, -o OUT.exr or --script EDITS.json");
+        return EXIT_USAGE;
+    }
+    if (v->common.quiet)
+        log_set_level(LOG_WARN);
+    struct tensor_file *f = tensor_open(v->tensor);
+    const bool done = f && edit_file(v, command, tensor_get(f));
+    tensor_close(f);
+    return done ? EXIT_DONE : EXIT_FAILED;
+}
+
+const struct subcommand subcommand_edit = {
+    .entry = {.name = "edit", .help = "replay a tensor with other materials",
+              .size = sizeof(struct values)},
+    .options = {.options = options, .arguments = arguments,
+                .description = "Makes the picture of a tensor of `relume precompute edit` with "
+                               "edited materials. Without\nchanges: as the scene is.",
+                .examples =
+                    "  relume edit tea.safetensors --list\n"
+                    "  relume edit tea.safetensors -o dull.exr --set cup.exponent=20 --time\n"
+                    "  relume edit tea.safetensors -o haze.exr "
+                    "--op cup.specular.f_A:amplify-y,4,8,20,30,3\n"
+                    "  relume edit tea.safetensors -o last.exr --script session.json --json\n",
+                .more_help = more_help},
+    .run = run,
+};
