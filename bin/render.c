@@ -15,6 +15,7 @@
 #include "subcommand.h"
 
 struct values {
+    struct receiver receiver;
     const char *scene, *output, *integrator, *sampler, *aovs;
     int spp, size[2], crop[4], max_depth, seed, threads;
     double seconds, noise, checkpoint, preview;
@@ -59,6 +60,10 @@ static const struct option_spec options[] = {
      .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
     {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
      .min = 0, .max = 65536, .help = "render these pixels only; X1 and Y1 are just past the last"},
+    {.name = "texels", .type = OPTION_TEXT, .offset = AT(receiver.texels), .argument = "SHAPE",
+     .help = "irradiance on the texels of a mesh in place of the camera's picture"},
+    {.name = "vertices", .type = OPTION_TEXT, .offset = AT(receiver.vertices), .argument = "SHAPE",
+     .help = "irradiance at the vertices of a mesh, 256 to a row"},
     {.name = "integrator", .type = OPTION_TEXT, .offset = AT(integrator), .argument = "NAME",
      .help = "integrator in place of the scene's"},
     {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
@@ -147,7 +152,8 @@ static int run_job(const struct values *v, const char *command, const struct sce
     progress_begin(&listener.progress, "render", v->quiet);
     ranks_start();
     const struct job_options job_options = {
-        .scene = v->scene, .spp = v->spp, .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
+        .scene = v->scene, .spp = v->spp, .receiver = v->receiver,
+                .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
         .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
         .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
         .adaptive = v->adaptive,

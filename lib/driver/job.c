@@ -158,6 +158,8 @@ static bool prepare(struct job *job, const struct job_options *o) {
         job->defines_hash = file_hash(d->name, strlen(d->name) + 1, job->defines_hash);
         job->defines_hash = file_hash(d->value, strlen(d->value) + 1, job->defines_hash);
     }
+    for (const char *c = o->receiver.texels ? o->receiver.texels : o->receiver.vertices; c && *c; c++)
+        job->defines_hash = file_hash(c, 1, job->defines_hash + (o->receiver.texels != NULL));
     return set_render_options(job, o);
 }
 
@@ -177,7 +179,8 @@ bool job_open(struct job *job, const struct job_options *o) {
     job->scene = scene_read(o->scene, &reading);
     if (job->scene && o->edit_scene)
         o->edit_scene(job->scene, o->edit_user);
-    job->world = job->scene ? world_create(job->scene, o->threads) : NULL;
+    if (job->scene && receiver_place(&o->receiver, &reading, job->scene))
+        job->world = world_create(job->scene, o->threads);
     if (!job->world || !prepare(job, o)) {
         job_close(job);
         return false;

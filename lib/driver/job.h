@@ -5,11 +5,13 @@
 #include "base/options.h"
 #include "driver/light_groups.h"
 #include "driver/method.h"
+#include "driver/receiver.h"
 #include "driver/render.h"
 
 struct job_options {
     const char *scene;
     struct scene_options reading; // registries are filled in by job_open
+    struct receiver receiver;
     int spp;                      // 0: what the scene asks for, else 64; no limit where time or
                                   // noise is one
     uint64_t samples[2];          // first and end of a range on block boundaries; 0, 0: all

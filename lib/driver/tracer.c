@@ -44,6 +44,13 @@ static float receive(const struct sensor_place *place, struct surface *s, struct
     return PI * place->weight;
 }
 
+// A film coordinate of a pixel. Rounding can take it to the pixel's end, which belongs to the next,
+// and that is another place to a meter.
+static float film_point(int pixel, float offset) {
+    const float x = (float)pixel + 0.5f + offset, end = (float)pixel + 1;
+    return x < end || offset >= 0.5f ? x : nextafterf(end, 0);
+}
+
 // The path of one lane through a point of the film; returns its weight.
 static float start_path(const struct tracer_options *o, struct worker *w, uint32_t lane, float x,
                         float y, struct vec2 lens, struct path_start *start) {
@@ -71,7 +78,7 @@ static void start_paths(const struct tracer *t, struct worker *w, int x0, int y0
                                          o->replicates, o->seed);
         const struct vec2 d = filter_sample(o->filter, sampler_2d(&s), &b->weights[lane]);
         const struct vec2 lens = sampler_2d(&s);
-        b->weights[lane] *= start_path(o, w, lane, (float)x + 0.5f + d.x, (float)y + 0.5f + d.y, lens,
+        b->weights[lane] *= start_path(o, w, lane, film_point(x, d.x), film_point(y, d.y), lens,
                                        &b->starts[lane]);
         b->starts[lane].sampler = s;
         sink->type->place(sink, (int)lane, x, y, sample);
