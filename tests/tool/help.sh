@@ -92,7 +92,7 @@ fill() {
         xml="<shape type=\"shapegroup\" id=\"g\"><shape type=\"sphere\"/></shape>
             ${xml/<\/shape>/<ref id=\"g\"\/><\/shape>}"
         ;;
-    sensor/irradiancemeter) xml="<shape type=\"rectangle\">$xml</shape>" ;;
+    sensor/irradiancemeter | sensor/texels | sensor/vertices) xml="<shape type=\"rectangle\">$xml</shape>" ;;
     light/area) xml="<shape type=\"sphere\">$xml</shape>" ;;
     bsdf/merl) xml=${xml//FILE/$materials/table.binary} ;;
     bsdf/measured) xml=${xml//FILE/$materials/film.bsdf} ;;
