@@ -37,6 +37,7 @@ static const struct kind kinds[] = {
     KIND("sampler", "random numbers, inside a sensor", "sampler", &samplers),
     KIND("integrator", "methods of rendering", "integrator", &integrators),
     KIND("spectrum", "colours by wavelength", "spectrum", &scene_spectra),
+    KIND("format", "scenes of other programs", NULL, &scene_formats),
     KIND("material", "indices of refraction by name", NULL, NULL),
     KIND("subcommand", "what the program does", NULL, &subcommands),
 };
@@ -46,7 +47,7 @@ static const struct entry *const kind_entries[] = {
     &kinds[0].entry, &kinds[1].entry, &kinds[2].entry, &kinds[3].entry,  &kinds[4].entry,
     &kinds[5].entry, &kinds[6].entry, &kinds[7].entry, &kinds[8].entry,  &kinds[9].entry,
     &kinds[10].entry, &kinds[11].entry, &kinds[12].entry, &kinds[13].entry, &kinds[14].entry,
-    &kinds[15].entry, NULL};
+    &kinds[15].entry, &kinds[16].entry, NULL};
 _Static_assert(sizeof kind_entries / sizeof *kind_entries == KINDS + 1, "a kind is not listed");
 static const struct registry kind_registry = {"kind", kind_entries};
 
@@ -94,7 +95,9 @@ static void print_claims(const struct bsdf_type *type) {
 }
 
 static void explain(const struct kind *k, const struct entry *e) {
-    if (k->registry == &subcommands) {
+    if (k->registry == &scene_formats) {
+        scene_print_format(e);
+    } else if (k->registry == &subcommands) {
         subcommand_print_help((const struct subcommand *)(const void *)e);
     } else if (k->registry == &mesh_readers) {
         struct entry shape = *e;
@@ -169,7 +172,7 @@ static const struct option_spec options[] = {OPTION_END};
 static const struct option_argument arguments[] = {
     {.name = "KIND", .offset = offsetof(struct help_options, kind), .optional = true,
      .help = "shape, mesh, bsdf, texture, light, sensor, film, filter, sampler, integrator,\n"
-             "spectrum, material or subcommand; or the name of one of these"},
+             "spectrum, format, material or subcommand; or the name of one of these"},
     {.name = "NAME", .offset = offsetof(struct help_options, name), .optional = true,
      .help = "an entry of that kind"},
     {.name = NULL},

@@ -22,7 +22,7 @@ struct values {
 
 static const struct option_argument arguments[] = {
     {"KIND", AT(kind), "relight: how the picture depends on its lighting", false, false},
-    {"SCENE", AT(scene), "scene (.xml) or model (.gltf, .glb, .obj)", false, false},
+    {"SCENE", AT(scene), "scene (.xml, .pbrt) or model (.gltf, .glb, .obj)", false, false},
     {.name = NULL},
 };
 

@@ -18,7 +18,7 @@ struct values {
 };
 
 static const struct option_argument arguments[] = {
-    {"SCENE", offsetof(struct values, scene), "scene (.xml) or model (.gltf, .glb, .obj)", false, false},
+    {"SCENE", offsetof(struct values, scene), "scene (.xml, .pbrt) or model (.gltf, .glb, .obj)", false, false},
     {.name = NULL},
 };
 

@@ -7,3 +7,4 @@
 
 struct xml_node *gltf_scene_tree(struct reader *r, const char *path);
 struct xml_node *obj_scene_tree(struct reader *r, const char *path);
+struct xml_node *pbrt_scene_tree(struct reader *r, const char *path);

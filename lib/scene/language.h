@@ -13,3 +13,7 @@ const struct param *scene_mesh_params(const struct entry *format);
 // Prints on standard output what <ELEMENT type="NAME"> means: its parameters with what they take,
 // unit, range and default, its other names, and the element as it would stand in a file.
 void scene_print_entry(const char *element, const struct entry *e);
+
+// Formats of scenes of which a table says what becomes of what, and that table in Markdown.
+extern const struct registry scene_formats;
+void scene_print_format(const struct entry *format);

@@ -69,6 +69,7 @@ struct reader {
     struct object *default_bsdf[DEFAULT_BSDFS];
     uint32_t group_count;
     int depth; // of objects being made inside objects
+    struct where place; // of elements that a reader of another format adds; file NULL: the scene's
 };
 
 // ---- load.c: files to one tree --------------------------------------------------------------

@@ -15,6 +15,7 @@ static const struct format {
     {"gltf", gltf_scene_tree},
     {"glb", gltf_scene_tree},
     {"obj", obj_scene_tree},
+    {"pbrt", pbrt_scene_tree},
 };
 
 static const struct format *find_format(const char *path) {
@@ -120,7 +121,7 @@ static void finish(struct reader *r) {
 struct scene *scene_read(const char *path, const struct scene_options *options) {
     const struct format *format = find_format(path);
     if (!format) {
-        log_error("%s: is not a scene format that is read (xml, gltf, glb, obj)", path);
+        log_error("%s: is not a scene format that is read (xml, gltf, glb, obj, pbrt)", path);
         return NULL;
     }
     struct scene *s = mem_array(1, sizeof *s);

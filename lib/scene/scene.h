@@ -118,6 +118,6 @@ struct scene_options {
 
 // Whether the extension is one that scene_read knows.
 bool scene_is_format(const char *path);
-// Reads by the file's extension (.xml, .gltf, .glb, .obj). NULL after an error message.
+// Reads by the file's extension (.xml, .gltf, .glb, .obj, .pbrt). NULL after an error message.
 struct scene *scene_read(const char *path, const struct scene_options *options);
 void scene_destroy(struct scene *s);

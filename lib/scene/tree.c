@@ -4,6 +4,8 @@
 #include <string.h>
 
 static struct where place(const struct reader *r) {
+    if (r->place.file)
+        return r->place;
     return (struct where){r->scene->path, 0};
 }
 

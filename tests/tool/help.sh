@@ -136,6 +136,8 @@ contains "$out" "(degrees)"
 expect 0 "$relume" help emitter spot
 expect 0 "$relume" help rfilter box
 expect 0 "$relume" help material Au
+expect 0 "$relume" help format pbrt
+contains "$readme" "$out"
 expect 0 "$relume" help material
 contains "$out" "bk7"
 
