@@ -3,13 +3,18 @@
 
 #include <stdalign.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 
 enum { ALIGNMENT = 64, BLOCK_BYTES = 256 * 1024 };
+// What is looked up at random in many small pages waits for the table of pages too: large arrays
+// ask for huge ones.
+enum { HUGE_PAGE = 2 << 20, LEAST_HUGE = 2 * HUGE_PAGE };
 
 struct arena_block {
     alignas(64) struct arena_block *previous;
@@ -32,9 +37,15 @@ void *mem_array_at(size_t count, size_t size, const char *file, int line) {
         out_of_memory(count, size, file, line);
     size_t bytes = count * size;
     bytes = (bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1); // never zero
-    void *p = aligned_alloc(ALIGNMENT, bytes);
+    const bool large = bytes >= LEAST_HUGE && bytes <= SIZE_MAX - HUGE_PAGE;
+    const size_t unit = large ? HUGE_PAGE : ALIGNMENT;
+    void *p = aligned_alloc(unit, (bytes + unit - 1) & ~(unit - 1));
     if (!p)
         out_of_memory(count, size, file, line);
+#ifdef MADV_HUGEPAGE
+    if (large)
+        madvise(p, bytes, MADV_HUGEPAGE); // a wish: what refuses it works without
+#endif
     return memset(p, 0, bytes);
 }
 
