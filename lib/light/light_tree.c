@@ -1,56 +1,124 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "light/light_tree.h"
 
-#include "base/mem.h"
+#include <string.h>
 
-// Cosines below come from square roots and can be wrong by the root of the rounding: nothing is
-// excluded, nor counted less, than with this much to spare.
-static const float SLACK = 2e-3f;
+#include "base/mem.h"
+#include "math/lanes.h"
+
+// Cosines below come from square roots and can be wrong by the root of the rounding, that of axes in
+// 16 bits: nothing is excluded, nor counted less, than with this much to spare.
+static const float SLACK = 1e-2f;
 // Share that light from behind the receiver's normal counts: a guide only, since a material may
 // have tilted the normal it really uses.
 static const float LEAST_COSINE = 0.0625f;
 
-// Cosine of max(0, a - b), for angles in [0, pi] by cosine and sine.
-static inline float4 cos_beyond(float4 cos_a, float4 sin_a, float4 cos_b, float4 sin_b) {
-    return lanes_select(cos_a > cos_b, lanes_all(1), cos_a * cos_b + sin_a * sin_b);
+typedef uint16_t wide_u16 __attribute__((vector_size(32)));
+typedef int16_t wide_i16 __attribute__((vector_size(32)));
+
+static inline wide unsigned_lanes(const uint16_t v[WIDE_LANES]) {
+    wide_u16 x;
+    memcpy(&x, v, sizeof x);
+    return __builtin_convertvector(__builtin_convertvector(x, wide_int), wide);
 }
 
-static inline float4 sine(float4 cosine) {
-    return lanes_sqrt(1.0f - cosine * cosine);
+static inline wide unit_lanes(const int16_t v[WIDE_LANES]) {
+    wide_i16 x;
+    memcpy(&x, v, sizeof x);
+    return __builtin_convertvector(__builtin_convertvector(x, wide_int), wide) * (1.0f / 32767);
+}
+
+static inline wide intensity_lanes(const struct light_node *node) {
+    wide_u16 x;
+    memcpy(&x, node->intensity, sizeof x);
+    return (wide)(__builtin_convertvector(x, wide_uint) << 16);
+}
+
+static inline struct wide3 centre_lanes(const struct light_node *node) {
+    return (struct wide3){node->origin[0] + node->step * unsigned_lanes(node->centre[0]),
+                          node->origin[1] + node->step * unsigned_lanes(node->centre[1]),
+                          node->origin[2] + node->step * unsigned_lanes(node->centre[2])};
 }
 
 // Upper bounds of what the children give: intensity x cosines / distance^2 over all points and
-// normals of a child. The distance is that of the middle, but at least the child's own size.
-static inline float4 importance(const struct light_node *node, const struct light_place *at) {
-    const float4 x = node->centre[0] - at->p[0], y = node->centre[1] - at->p[1],
-                 z = node->centre[2] - at->p[2];
-    const float4 d2 = x * x + y * y + z * z, r2 = node->radius * node->radius;
-    const ivec4 inside = d2 <= r2;
-    const float4 far2 = lanes_select(inside, r2, d2);
-    const float4 near = 1.0f / lanes_sqrt(far2);
-    // the angle that the child fills
-    const float4 sin2_b = r2 / far2;
-    const float4 cos_b = lanes_sqrt(1.0f - sin2_b), sin_b = lanes_sqrt(sin2_b);
-    // from the cone of normals to the place, at least
-    const float4 cos_w = -near * (x * node->axis[0] + y * node->axis[1] + z * node->axis[2]);
-    const float4 sin_w = sine(cos_w), sin_o = sine(node->cos_o);
-    const float4 cos_x = cos_beyond(cos_w, sin_w, node->cos_o, sin_o);
-    const ivec4 all = inside | (node->cos_o <= -1.0f);
-    const float4 cos_l = lanes_select(all, lanes_all(1), cos_beyond(cos_x, sine(cos_x), cos_b, sin_b));
-    float4 value = node->intensity * lanes_max(cos_l, lanes_all(SLACK));
+// normals of a child. The distance is that of the middle, but at least the child's own size. Of the
+// angles, b is what the child fills, o what its normals fill, w lies between their axis and the
+// place, n between the receiver's normal and the child; of all but o cosine and sine are kept times
+// the distance, so that no root waits for another.
+static inline wide importance(const struct light_node *node, const struct light_place *at) {
+    const wide none = {0}, one = wide_of(1);
+    const wide cos_o = unit_lanes(node->cos_o), sin_o = wide_sqrt(1 - cos_o * cos_o);
+    const wide sin_b = node->radius_step * unsigned_lanes(node->radius), r2 = sin_b * sin_b;
+    const struct wide3 d = wide3_sub(centre_lanes(node), wide3_of(at->p));
+    const wide d2 = wide_dot(d, d);
+    const wide_mask inside = d2 <= r2;
+    const wide far2 = wide_select(inside, r2, d2), inv2 = 1 / far2;
+    const wide cos_b = wide_sqrt(far2 - r2);
+    // beyond o + b the light shines slantwise
+    const struct wide3 axis = {unit_lanes(node->axis[0]), unit_lanes(node->axis[1]),
+                               unit_lanes(node->axis[2])};
+    const wide cos_w = -wide_dot(d, axis);
+    const wide sin_w = wide_sqrt(wide_max(d2 - cos_w * cos_w, none));
+    const wide cos_ob = cos_o * cos_b - sin_o * sin_b, sin_ob = sin_o * cos_b + cos_o * sin_b;
+    const wide_mask straight = inside | (sin_ob < 0) | (cos_w > cos_ob);
+    const wide cos_l = wide_select(straight, one, (cos_w * cos_ob + sin_w * sin_ob) * inv2);
+    const wide intensity = intensity_lanes(node);
+    wide value = intensity * wide_max(cos_l, wide_of(SLACK));
     if (length2(at->n) > 0) {
-        const float4 cos_n = near * (x * at->n[0] + y * at->n[1] + z * at->n[2]);
-        const float4 cos_i = cos_beyond(cos_n, sine(cos_n), cos_b, sin_b);
-        value *= lanes_select(inside, lanes_all(1), lanes_max(cos_i, lanes_all(LEAST_COSINE)));
+        const wide cos_n = wide_dot(d, wide3_of(at->n));
+        const wide sin_n = wide_sqrt(wide_max(d2 - cos_n * cos_n, none));
+        const wide cos_i = wide_select(inside | (cos_n > cos_b), one,
+                                       (cos_n * cos_b + sin_n * sin_b) * inv2);
+        value *= wide_max(cos_i, wide_of(LEAST_COSINE));
     }
-    const ivec4 dark = (cos_l < node->cos_e - SLACK) | (node->intensity <= 0.0f);
-    // Divided twice: the square alone may leave the range of float. At the very point of a light
-    // without size the quotient is infinite.
-    return lanes_select(dark, lanes_all(0), lanes_min(value * near * near, lanes_all(1e36f)));
+    const wide_mask dark = (cos_l < unit_lanes(node->cos_e) - SLACK) | (intensity <= 0);
+    // at the very point of a light without size the product is infinite
+    return wide_select(dark, none, wide_min(value * inv2, wide_of(1e36f)));
 }
 
-static inline float sum_of(float4 v) {
-    return (v[0] + v[1]) + (v[2] + v[3]);
+static const double END = 0x1.fffffffffffffp-1; // the last number below 1
+
+typedef double double4 __attribute__((vector_size(32)));
+
+// Children are looked at as a table of four rows, a column first: fewer steps than one by one.
+struct table {
+    double row[4][4];
+    double column[4]; // sums up to and with each
+};
+
+static inline struct table table_of(wide v) {
+    struct table t;
+    float4 f[4];
+    double4 r[4];
+    memcpy(f, &v, sizeof f);
+    for (int j = 0; j < 4; j++)
+        r[j] = __builtin_convertvector(f[j], double4);
+    memcpy(t.row, r, sizeof r);
+    const double4 sum = (r[0] + r[1]) + (r[2] + r[3]);
+    t.column[0] = sum[0];
+    t.column[1] = sum[0] + sum[1];
+    t.column[2] = t.column[1] + sum[2];
+    t.column[3] = t.column[1] + (sum[2] + sum[3]);
+    return t;
+}
+
+static inline double table_value(const struct table *t, int i) {
+    return t->row[i / 4][i % 4];
+}
+
+// The child at *x in [0, sum), one of those above 0; *x becomes the place within it.
+static inline int table_choose(const struct table *t, double *x) {
+    const int k = (*x >= t->column[0]) + (*x >= t->column[1]) + (*x >= t->column[2]);
+    *x -= k > 0 ? t->column[k - 1] : 0;
+    const double a = t->row[0][k], b = a + t->row[1][k], c = b + t->row[2][k];
+    const int j = (*x >= a) + (*x >= b) + (*x >= c);
+    *x -= j > 1 ? j > 2 ? c : b : j > 0 ? a : 0;
+    if (t->row[j][k] > 0)
+        return 4 * j + k;
+    int last = 0; // by rounding, beyond the last
+    for (int i = 0; i < WIDE_LANES; i++)
+        last = table_value(t, i) > 0 ? i : last;
+    return last;
 }
 
 bool light_tree_choose(const struct light_tree *t, const struct light_place *at, double u,
@@ -58,54 +126,55 @@ bool light_tree_choose(const struct light_tree *t, const struct light_place *at,
     double probability = 1;
     if (t->node_count == 0)
         return false;
-    for (uint32_t child = 0; !(child & LIGHT_TREE_LEAF); *item = child) {
+    uint32_t child = 0;
+    while (!(child & LIGHT_TREE_LEAF)) {
         const struct light_node *node = &t->nodes[child];
-        const float4 v = importance(node, at);
-        const float sum = sum_of(v);
+        const struct table values = table_of(importance(node, at));
+        const double sum = values.column[3];
         if (!(sum > 0))
             return false;
-        double rest = u * (double)sum;
-        int chosen = -1;
-        for (int i = 0; i < 4; i++) {
-            if (!(v[i] > 0))
-                continue;
-            if (chosen >= 0)
-                rest -= (double)v[chosen];
-            chosen = i;
-            if (rest < (double)v[i])
-                break;
-        }
-        u = fmin(fmax(rest / (double)v[chosen], 0), 0x1.fffffffffffffp-1);
-        probability *= (double)(v[chosen] / sum);
-        child = node->child[chosen];
+        double x = u * sum;
+        const int i = table_choose(&values, &x);
+        child = node->child[i];
+        x /= table_value(&values, i);
+        u = x > 0 ? x < END ? x : END : 0;
+        probability *= table_value(&values, i) / sum;
     }
-    *item -= LIGHT_TREE_LEAF;
+    *item = child - LIGHT_TREE_LEAF;
     *pmf = (float)probability;
     return *pmf > 0;
 }
 
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item) {
     double probability = 1;
-    if (t->slots[item] == LIGHT_TREE_NONE)
+    uint32_t slot = t->slots[item];
+    if (slot == LIGHT_TREE_NONE)
         return 0;
-    for (uint32_t slot = t->slots[item]; slot != LIGHT_TREE_LEAF;) {
-        const struct light_node *node = &t->nodes[slot / 4];
-        const float4 v = importance(node, at);
-        const float sum = sum_of(v);
-        if (!(v[slot % 4] > 0))
+    for (; slot != LIGHT_TREE_NONE; slot = t->parents[slot / WIDE_LANES]) {
+        const struct table values = table_of(importance(&t->nodes[slot / WIDE_LANES], at));
+        const double value = table_value(&values, (int)(slot % WIDE_LANES));
+        if (!(value > 0))
             return 0;
-        probability *= (double)(v[slot % 4] / sum);
-        slot = node->parent;
+        probability *= value / values.column[3];
     }
     return (float)probability;
 }
 
+int light_tree_depth(const struct light_tree *t, uint32_t item) {
+    int nodes = 0;
+    for (uint32_t s = t->slots[item]; s != LIGHT_TREE_NONE; s = t->parents[s / WIDE_LANES])
+        nodes++;
+    return nodes;
+}
+
 void light_tree_finish(struct light_tree *t) {
     mem_free(t->nodes);
+    mem_free(t->parents);
     mem_free(t->slots);
     *t = (struct light_tree){0};
 }
 
 size_t light_tree_bytes(const struct light_tree *t) {
-    return t->node_count * sizeof *t->nodes + t->item_count * sizeof *t->slots;
+    return t->node_count * (sizeof *t->nodes + sizeof *t->parents) +
+           t->item_count * sizeof *t->slots;
 }

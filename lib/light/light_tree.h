@@ -4,8 +4,9 @@
 // A tree of bounds over position and direction is descended from its root, at every node by chance
 // in proportion to an upper bound of the irradiance of each child (A. Conty Estevez, C. Kulla 2018,
 // Importance Sampling of Many Lights with Adaptive Tree Splitting; without the splitting; M. Pharr,
-// W. Jakob, G. Humphreys 2023, 12.6.3). Nodes have four children that are looked at together. The
-// probability of a light is found on the way from its leaf up to the root.
+// W. Jakob, G. Humphreys 2023, 12.6.3). Nodes have sixteen children that are looked at together: what
+// a node costs is mostly the wait for it, so few nodes are better than small ones. The probability
+// of a light is found on the way from its leaf up to the root.
 //
 // A light of positive intensity that can light a place has a positive probability there. Nothing
 // here has a unit of its own: scenes that differ by a power of two give the same bits.
@@ -13,7 +14,7 @@
 
 #include <stddef.h>
 
-#include "math/lanes.h"
+#include "math/wide.h"
 
 // Where one light (a point, a triangle, ...) stands and whither it shines.
 struct light_bounds {
@@ -32,7 +33,8 @@ struct light_place {
 
 struct light_tree {
     struct light_node *nodes; // owned
-    uint32_t *slots;          // by item: 4 x node + child; owned
+    uint32_t *parents;        // by node: 16 x node + child; of the root: LIGHT_TREE_NONE; owned
+    uint32_t *slots;          // by item: 16 x node + child; owned
     uint32_t node_count, item_count;
 };
 
@@ -46,18 +48,22 @@ bool light_tree_choose(const struct light_tree *t, const struct light_place *at,
                        uint32_t *item, float *pmf);
 // The probability that choose finds the item.
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item);
+// Nodes that choose looks at to find the item.
+int light_tree_depth(const struct light_tree *t, uint32_t item);
 
 // ---- for building
 
 #define LIGHT_TREE_LEAF 0x80000000u // of a child: it is item child - LIGHT_TREE_LEAF
 #define LIGHT_TREE_NONE UINT32_MAX  // slot of an item that is not in the tree
 
-// Bounds of four children, a lane each. Unused lanes have intensity 0.
+// Bounds of the children, a lane each, in 16 bits and rounded so that they hold what they bound.
+// Unused lanes have intensity 0.
 struct light_node {
-    float4 centre[3], radius; // of a sphere
-    float4 axis[3];
-    float4 cos_o, cos_e;
-    float4 intensity;
-    uint32_t child[4];
-    uint32_t parent; // 4 x node + child; of the root: LIGHT_TREE_LEAF
+    float origin[3], step;                  // of the centres
+    float radius_step;
+    uint16_t centre[3][WIDE_LANES], radius[WIDE_LANES]; // of a sphere, in steps
+    int16_t axis[3][WIDE_LANES];            // 32767: 1
+    int16_t cos_o[WIDE_LANES], cos_e[WIDE_LANES];
+    uint16_t intensity[WIDE_LANES];         // upper half of a float
+    uint32_t child[WIDE_LANES];
 };

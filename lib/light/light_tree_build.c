@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Building the light tree: ranges of lights are split where the sum over both sides of intensity x
 // measure of directions x surface of the box is least (Conty Estevez, Kulla 2018, equation 1), over
-// bins along each axis; a node takes the four ranges that three splits make.
+// bins along each axis; a node takes the ranges that fifteen splits make.
 #include <float.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "light/light_tree.h"
@@ -30,7 +31,7 @@ struct range {
 struct builder {
     struct item *items;
     struct light_tree *tree;
-    size_t capacity; // of the tree's nodes
+    size_t capacity, parents_capacity; // of the tree's nodes
 };
 
 static const struct cluster EMPTY = {.min = {INFINITY, INFINITY, INFINITY},
@@ -184,60 +185,115 @@ static float cos_sum(float a, float b) {
     return a <= -b ? -1 : a * b - safe_sqrt(1 - a * a) * safe_sqrt(1 - b * b);
 }
 
-static void set_lane(struct light_node *node, int lane, const struct item *items,
-                     const struct range *r) {
+// Bounds of a range, as they are before they are rounded into a node.
+struct bounds {
+    vec3 centre, axis;
+    float radius, cos_o;
+};
+
+static struct bounds bounds_of(const struct item *items, const struct range *r) {
     const struct cluster *c = &r->c;
-    const vec3 centre = 0.5f * c->min + 0.5f * c->max;
-    const vec3 size = c->max - centre, reach = v3(fabsf(centre[0]), fabsf(centre[1]), fabsf(centre[2]));
+    const vec3 centre = 0.5f * c->min + 0.5f * c->max, size = c->max - centre;
+    const vec3 reach = v3(fabsf(centre[0]), fabsf(centre[1]), fabsf(centre[2]));
     const vec3 axis = normalize(c->axes);
     float cos_o = length2(axis) > 0 ? 1 : -1;
     for (uint32_t i = r->begin; i < r->end && cos_o > -1; i++)
         cos_o = items[i].b.cos_o <= -1
                     ? -1
                     : minf(cos_o, cos_sum(dot(axis, items[i].b.axis), items[i].b.cos_o));
-    for (int k = 0; k < 3; k++) {
-        node->centre[k][lane] = centre[k];
-        node->axis[k][lane] = axis[k];
-    }
-    node->radius[lane] = length(size) * (1 + 1e-6f) + 0x1p-22f * length(reach);
-    node->cos_o[lane] = cos_o > -1 ? maxf(cos_o - 1e-6f, -1) : -1;
-    node->cos_e[lane] = c->cos_e;
-    node->intensity[lane] = c->intensity;
+    return (struct bounds){centre, axis, length(size) * (1 + 1e-6f) + 0x1p-22f * length(reach),
+                           cos_o};
 }
 
-// Up to four ranges from one; those of the greatest cost are split.
-static int split_in_four(struct builder *b, const struct range *from, int depth,
-                         struct range out[4]) {
+static int16_t unit_down(float x) {
+    return (int16_t)floorf(clampf(x, -1, 1) * 32767);
+}
+
+// The upper half of a float that is not below x >= 0.
+static uint16_t half_up(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (uint16_t)((bits + 0xffff) >> 16);
+}
+
+// Steps of the coordinates between all centres, and of the largest radius once half the diagonal of
+// a step is added: so far may a centre be from where it is rounded to.
+static void set_steps(struct light_node *node, const struct bounds *b, int n, float *moved) {
+    vec3 lo = b[0].centre, hi = b[0].centre;
+    float radius = 0, reach = 0;
+    for (int i = 0; i < n; i++) {
+        lo = least(lo, b[i].centre);
+        hi = most(hi, b[i].centre);
+        radius = maxf(radius, b[i].radius);
+    }
+    for (int k = 0; k < 3; k++) {
+        node->origin[k] = lo[k];
+        node->step = maxf(node->step, (hi[k] - lo[k]) / 65535);
+        reach = maxf(reach, maxf(fabsf(lo[k]), fabsf(hi[k])));
+    }
+    *moved = 0.87f * node->step + 0x1p-22f * reach;
+    node->radius_step = (radius + *moved) / 65534;
+}
+
+static void set_lanes(struct light_node *node, const struct item *items, const struct range *ranges,
+                      int n) {
+    struct bounds b[WIDE_LANES] = {0};
+    float moved;
+    for (int i = 0; i < n; i++)
+        b[i] = bounds_of(items, &ranges[i]);
+    set_steps(node, b, n, &moved);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < 3; k++) {
+            const float steps = (b[i].centre[k] - node->origin[k]) / node->step;
+            node->centre[k][i] = (uint16_t)(node->step > 0 ? minf(rintf(steps), 65535) : 0);
+            node->axis[k][i] = (int16_t)rintf(b[i].axis[k] * 32767);
+        }
+        const float radius = (b[i].radius + moved) / node->radius_step;
+        node->radius[i] = (uint16_t)(node->radius_step > 0 ? minf(ceilf(radius), 65535) : 0);
+        // an axis of 16 bits is off by 3e-5 at most
+        node->cos_o[i] = b[i].cos_o > -1 ? unit_down(b[i].cos_o - 3e-5f) : -32767;
+        node->cos_e[i] = unit_down(ranges[i].c.cos_e);
+        node->intensity[i] = half_up(ranges[i].c.intensity);
+    }
+}
+
+// The range to split next: of those that do not fit into one node the one of the greatest cost, else
+// the greatest cost where all fit into this one; -1: none. So nodes are well filled.
+static int worst_range(const struct range *ranges, int n, uint32_t fits) {
+    int worst = -1;
+    for (int i = 0; i < n; i++)
+        if (ranges[i].c.count > fits && (worst < 0 || cost(&ranges[i].c) > cost(&ranges[worst].c)))
+            worst = i;
+    return worst;
+}
+
+static int split_for_node(struct builder *b, const struct range *from, int depth,
+                          struct range out[WIDE_LANES]) {
+    const uint32_t fits = from->c.count <= WIDE_LANES ? 1 : WIDE_LANES;
     int n = 1;
     out[0] = *from;
-    while (n < 4) {
-        int worst = -1;
-        for (int i = 0; i < n; i++)
-            if (out[i].c.count > 1 &&
-                (worst < 0 || cost(&out[i].c) > cost(&out[worst].c)))
-                worst = i;
-        if (worst < 0)
-            break;
+    for (int worst; n < WIDE_LANES && (worst = worst_range(out, n, fits)) >= 0; n++) {
         struct range two[2];
         split_range(b, &out[worst], depth, two);
         out[worst] = two[0];
-        out[n++] = two[1];
+        out[n] = two[1];
     }
     return n;
 }
 
 static uint32_t build(struct builder *b, const struct range *from, uint32_t parent, int depth) {
-    struct range ranges[4];
+    struct range ranges[WIDE_LANES];
     const uint32_t index = b->tree->node_count++;
-    const int n = split_in_four(b, from, depth, ranges);
-    struct light_node node = {.parent = parent};
-    for (int i = 0; i < n; i++)
-        set_lane(&node, i, b->items, &ranges[i]);
+    const int n = split_for_node(b, from, depth, ranges);
+    struct light_node node = {0};
+    set_lanes(&node, b->items, ranges, n);
     mem_grow(&b->tree->nodes, &b->capacity, index + 1, sizeof node);
+    mem_grow(&b->tree->parents, &b->parents_capacity, index + 1, sizeof parent);
     b->tree->nodes[index] = node;
+    b->tree->parents[index] = parent;
     for (int i = 0; i < n; i++) {
         const struct range *r = &ranges[i];
-        const uint32_t slot = 4 * index + (uint32_t)i;
+        const uint32_t slot = WIDE_LANES * index + (uint32_t)i;
         const bool leaf = r->end - r->begin == 1;
         const uint32_t item = b->items[r->begin].index;
         if (leaf)
@@ -265,6 +321,6 @@ void light_tree_init(struct light_tree *t, const struct light_bounds *items, uin
     }
     const struct range all = {0, n, cluster_of(b.items, 0, n)};
     if (n > 0)
-        build(&b, &all, LIGHT_TREE_LEAF, 0);
+        build(&b, &all, LIGHT_TREE_NONE, 0);
     mem_free(b.items);
 }

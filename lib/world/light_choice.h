@@ -35,7 +35,7 @@ struct light_choice {
     struct alias_table table;   // of lights, of parts, or with a tree of lights without a place
     float table_share;          // with a tree: probability of taking from the table
     uint32_t *table_light;      // with a tree: light by entry of the table
-    uint32_t *part_light;       // by part
+    uint32_t *block_light;      // by part: the light of every 64th, and the last light
     struct light_tree tree;     // of all parts; those without a place are dark there
 };
 

@@ -92,8 +92,7 @@ static double nodes_visited(const struct light_tree *t, const struct places *p) 
         if (!light_tree_choose(t, &p->at[i], (double)rng_float(&rng), &item, &pmf))
             continue;
         choices++;
-        for (uint32_t slot = t->slots[item]; slot != LIGHT_TREE_LEAF; slot = t->nodes[slot / 4].parent)
-            nodes++;
+        nodes += (size_t)light_tree_depth(t, item);
     }
     return choices ? (double)nodes / (double)choices : 0;
 }
