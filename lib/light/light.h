@@ -61,8 +61,8 @@ struct light_type {
     // sample without emission, for infinite lights whose emission takes long: most of what is
     // sampled may be in shadow. NULL: sample is fast enough.
     bool (*aim)(const void *data, struct vec2 u, struct light_sample *s);
-    // sample for the lanes of p, with the same results; the lanes that were lit. NULL, or false from
-    // has_wide: one by one.
+    // sample, or aim where there is one, for the lanes of p, with the same results; the lanes that
+    // were lit. NULL, or false from has_wide (NULL: true): one by one.
     wide_mask (*sample_wide)(const void *data, const struct wide3 *p, const wide u[2],
                              struct light_samples *s);
     bool (*has_wide)(const void *data);

@@ -3,43 +3,13 @@
 //
 // The sky is sampled from a table of its luminance in cells of equal solid angle, the sun from its
 // cone; the density is the mixture of both wherever a direction comes from.
-#include "light/light.h"
-#include "light/preetham.h"
+#include "light/sunsky.h"
+
 #include "light/sun_position.h"
-#include "light/sunsky_model.h"
 #include "light/turn.h"
-#include "math/distribution.h"
 #include "math/elementary.h"
-#include "math/frame.h"
 
-enum { ROWS = 48, COLUMNS = 128 }; // in the cosine from the zenith, and around it
-
-struct sunsky {
-    float turbidity;
-    spectrum albedo;
-    vec3 sun_direction;
-    float latitude, longitude, timezone;
-    int year, month, day;
-    float hour, minute, second;
-    float sun_scale, sky_scale, scale, sun_aperture, sun_radius_scale;
-    int up, model;
-    struct transform to_world;
-    // made by prepare
-    struct affine world, local; // rotations; local z is up
-    struct sky_model sky;
-    struct preetham_sky preetham;
-    struct sun_model disk;
-    struct frame sun;           // local, n towards the sun
-    float half_aperture, sin_aperture;
-    float cone_height;          // 1 - cos of half_aperture
-    float sky_factor, sun_factor;
-    float sky_share;            // of the samples
-    bool dark;                  // the sun is below the horizon, or the scales are 0
-    struct distribution rows, columns[ROWS];
-    float density[ROWS][COLUMNS]; // per solid angle, of these
-    float mean;                 // luminance over the sphere
-    float radius;               // of the scene
-};
+enum { ROWS = SUNSKY_ROWS, COLUMNS = SUNSKY_COLUMNS };
 
 static const char *const ups[] = {"z", "y", NULL};
 static const char *const models[] = {"hosek", "preetham", NULL};
@@ -314,6 +284,7 @@ const struct light_type light_sunsky = {
     .entry = {.name = "sunsky", .help = "clear sky and sun (Hosek, Wilkie 2012, 2013)",
               .params = params, .size = sizeof(struct sunsky)},
     .infinite = true,
-    .prepare = prepare, .sample = sample, .aim = aim, .emission = emission, .pdf_sa = pdf_sa, .power = power,
+    .prepare = prepare, .sample = sample, .aim = aim,
+    .sample_wide = sunsky_aim_wide, .emission = emission, .pdf_sa = pdf_sa, .power = power,
     .detail = detail, .finish = finish,
 };

@@ -23,7 +23,7 @@ static void merge(wide_mask m, const struct light_samples *from, struct light_sa
 }
 
 static bool is_wide(const struct world_light *l) {
-    return l->type->has_wide && l->type->has_wide(l->data);
+    return l->type->sample_wide && (!l->type->has_wide || l->type->has_wide(l->data));
 }
 
 // One light for many lanes.
@@ -35,6 +35,7 @@ static uint32_t sample_together(const struct world_light *l, uint32_t lanes, con
     merge(wide_mask_of(lit), &s, &out->s);
     for (uint32_t left = lit; left; left &= left - 1)
         out->emission[__builtin_ctz(left)] = s.emission;
+    out->late |= l->type->aim ? lit : 0;
     return lit;
 }
 

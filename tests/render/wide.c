@@ -43,6 +43,10 @@ static const char more_lights[] =
     "<shape type='sphere'><point name='center' x='0' y='1.2' z='-1'/>"
     "<float name='radius' value='0.1'/><emitter type='area'/></shape>";
 
+static const char sky[] =
+    "<emitter type='sunsky'><vector name='sun_direction' x='0.3' y='0.2' z='0.8'/>"
+    "<float name='sun_aperture' value='20'/></emitter>";
+
 enum { LANES = 128, SAMPLES = 64 };
 
 // Adds up what arrives, lane by lane.
@@ -144,6 +148,7 @@ int main(void) {
     for (int i = 0; samplers.entries[i]; i++) {
         together_is_as_one_by_one("", samplers.entries[i]->name, "");
         together_is_as_one_by_one("", samplers.entries[i]->name, more_lights);
+        together_is_as_one_by_one("", samplers.entries[i]->name, sky);
     }
     together_is_as_one_by_one("<boolean name='hide_emitters' value='true'/>"
                               "<boolean name='strict_normals' value='true'/>", "sobol", more_lights);
