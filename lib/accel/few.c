@@ -10,6 +10,7 @@
 // Kapustin 2007; Jones 2000).
 #include "accel/few.h"
 
+#include "accel/few_box.h"
 #include "accel/few_facet.h"
 #include "accel/few_sphere.h"
 #include "base/mem.h"
@@ -17,6 +18,8 @@
 
 // Where a tree is faster for bounces: measured with tests/bench/packets.
 enum { MOST_TRIANGLES = 100, MOST_QUADRICS = 8 };
+
+enum { LEAST_IN_BOX = 4 }; // facets
 
 struct few_quadric {
     struct placed_quadric placed;
@@ -27,7 +30,8 @@ struct few_quadric {
 struct few {
     struct few_facet *facets;
     struct few_quadric *quadrics;
-    uint32_t facet_count, quadric_count;
+    struct few_box *boxes;   // over all facets, in order
+    uint32_t facet_count, quadric_count, box_count;
 };
 
 static double column_length(const double m[4][4], int c) {
@@ -63,9 +67,27 @@ static void set_bounds(struct few_quadric *q) {
         1.0001f * (float)(q->placed.kind == SHAPE_SPHERE && keeps_angles(m) ? longest : sum);
 }
 
+// Around the facets from `first` on.
+static void add_box(struct few *f, const struct mesh *m, uint32_t first) {
+    struct few_box *b = &f->boxes[f->box_count++];
+    *b = (struct few_box){.first = first, .count = f->facet_count - first,
+                          .lo = {INFINITY, INFINITY, INFINITY},
+                          .hi = {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t t = 0; t < m->triangle_count; t++)
+        for (int k = 0; k < 9; k++) {
+            const float x = m->positions[m->indices[t][k / 3]][k % 3];
+            b->lo[k % 3] = minf(x, b->lo[k % 3]);
+            b->hi[k % 3] = maxf(x, b->hi[k % 3]);
+            b->extent = maxf(fabsf(x), b->extent);
+        }
+}
+
 static void add_shape(struct few *f, const struct scene *s, uint32_t shape) {
     if (s->shapes[shape].kind == SHAPE_MESH) {
-        f->facet_count += few_facets_of(&s->shapes[shape].mesh, shape, f->facets + f->facet_count);
+        const struct mesh *m = &s->shapes[shape].mesh;
+        const uint32_t first = f->facet_count;
+        f->facet_count += few_facets_of(m, shape, f->facets + first);
+        add_box(f, m, first);
         return;
     }
     struct few_quadric *q = &f->quadrics[f->quadric_count++];
@@ -87,6 +109,7 @@ struct few *few_create(const struct scene *s) {
         return NULL;
     struct few *f = mem_array(1, sizeof *f);
     f->facets = mem_array(triangles, sizeof *f->facets);
+    f->boxes = mem_array(s->shape_count, sizeof *f->boxes);
     f->quadrics = mem_array(quadrics, sizeof *f->quadrics);
     for (uint32_t i = 0; i < s->shape_count; i++)
         add_shape(f, s, i);
@@ -97,6 +120,7 @@ void few_destroy(struct few *f) {
     if (!f)
         return;
     mem_free(f->facets);
+    mem_free(f->boxes);
     mem_free(f->quadrics);
     mem_free(f);
 }
@@ -235,22 +259,37 @@ static void name_hits(const struct few *f, const struct found *b, struct accel_h
     }
 }
 
-void few_intersect(const struct few *f, const struct accel_rays *r, struct accel_hits *h) {
-    const struct wide3 d = r->d, o_cross_d = wide_cross(r->o, d);
-    struct found b = {.t = r->tmax, .all = wide_of(1), .facet = wide_int_of(-1)};
-    for (uint32_t k = 0; k < f->facet_count; k++) {
+static void intersect_facets(const struct few *f, const struct few_box *box,
+                             const struct accel_rays *r, struct wide3 o_cross_d,
+                             struct found *b) {
+    for (uint32_t k = box->first; k < box->first + box->count; k++) {
         const struct few_facet *facet = &f->facets[k];
         wide sides[4], distance, speed;
-        const wide_mask reached = meet_plane(facet, r, b.t, &distance, &speed);
+        const wide_mask reached = meet_plane(facet, r, b->t, &distance, &speed);
         if (!wide_any(reached))
             continue;
-        const wide_mask hit = reached & line_meets(facet, d, o_cross_d, sides);
+        const wide_mask hit = reached & line_meets(facet, r->d, o_cross_d, sides);
         if (!wide_any(hit))
             continue;
-        b.t = wide_select(hit, distance / speed, b.t);
-        b.facet = wide_int_select(hit, wide_int_of((int32_t)k), b.facet);
-        set_hit(facet, hit, r, o_cross_d, sides, &b);
+        b->t = wide_select(hit, distance / speed, b->t);
+        b->facet = wide_int_select(hit, wide_int_of((int32_t)k), b->facet);
+        set_hit(facet, hit, r, o_cross_d, sides, b);
     }
+}
+
+// Whether to look into a box: with few facets in it that takes longer than they do.
+static bool look_into(const struct few_box *box, const struct accel_rays *r,
+                      const struct few_slabs *slabs, wide tmax) {
+    return box->count < LEAST_IN_BOX || few_box_is_met(box, r, slabs, tmax);
+}
+
+void few_intersect(const struct few *f, const struct accel_rays *r, struct accel_hits *h) {
+    const struct wide3 o_cross_d = wide_cross(r->o, r->d);
+    const struct few_slabs slabs = few_slabs_of(r);
+    struct found b = {.t = r->tmax, .all = wide_of(1), .facet = wide_int_of(-1)};
+    for (uint32_t k = 0; k < f->box_count; k++)
+        if (look_into(&f->boxes[k], r, &slabs, b.t))
+            intersect_facets(f, &f->boxes[k], r, o_cross_d, &b);
     const wide all = wide_select(b.all != 0, b.all, wide_of(1)); // of a triangle without area
     h->u = b.u / all;
     h->v = b.v / all;
@@ -260,16 +299,26 @@ void few_intersect(const struct few *f, const struct accel_rays *r, struct accel
     name_hits(f, &b, h);
 }
 
-uint32_t few_occluded(const struct few *f, const struct accel_rays *r) {
-    const struct wide3 d = r->d, o_cross_d = wide_cross(r->o, d);
-    const uint32_t live = wide_bits(r->tmin < r->tmax);
+static uint32_t facets_block(const struct few *f, const struct few_box *box,
+                             const struct accel_rays *r, struct wide3 o_cross_d) {
     uint32_t blocked = 0;
-    for (uint32_t k = 0; k < f->facet_count && blocked != live; k++) {
+    for (uint32_t k = box->first; k < box->first + box->count; k++) {
         wide sides[4], distance, speed;
         const wide_mask reached = meet_plane(&f->facets[k], r, r->tmax, &distance, &speed);
         if (wide_any(reached))
-            blocked |= wide_bits(reached & line_meets(&f->facets[k], d, o_cross_d, sides));
+            blocked |= wide_bits(reached & line_meets(&f->facets[k], r->d, o_cross_d, sides));
     }
+    return blocked;
+}
+
+uint32_t few_occluded(const struct few *f, const struct accel_rays *r) {
+    const struct wide3 o_cross_d = wide_cross(r->o, r->d);
+    const struct few_slabs slabs = few_slabs_of(r);
+    const uint32_t live = wide_bits(r->tmin < r->tmax);
+    uint32_t blocked = 0;
+    for (uint32_t k = 0; k < f->box_count && blocked != live; k++)
+        if (look_into(&f->boxes[k], r, &slabs, r->tmax))
+            blocked |= facets_block(f, &f->boxes[k], r, o_cross_d);
     for (uint32_t k = 0; k < f->quadric_count && blocked != live; k++) {
         const uint32_t near = come_near(&f->quadrics[k], r, r->tmax) & ~blocked;
         wide t = r->tmax;
