@@ -7,21 +7,14 @@
 #include "base/progress.h"
 #include "driver/precompute_relight.h"
 #include "driver/stop.h"
+#include "precompute.h"
 #include "subcommand.h"
 
-struct values {
-    struct receiver receiver;
-    const char *kind, *scene, *output, *basis, *integrator, *sampler;
-    int spp, size[2], crop[4], max_depth, seed, threads;
-    double memory;
-    bool half, dry_run, lenient, quiet, json;
-    struct option_list defines;
-};
-
-#define AT(member) offsetof(struct values, member)
+#define AT(member) offsetof(struct precompute_values, member)
 
 static const struct option_argument arguments[] = {
-    {"KIND", AT(kind), "relight: how the picture depends on its lighting", false, false},
+    {"KIND", AT(kind), "relight: how the picture depends on its lighting; edit: on its materials",
+     false, false},
     {"SCENE", AT(scene), "scene (.xml, .pbrt) or model (.gltf, .glb, .obj)", false, false},
     {.name = NULL},
 };
@@ -34,8 +27,21 @@ static const struct option_spec options[] = {
              "pixels:WxH: per cell of a latitude-longitude grid of directions;\n"
              "sh:N: spherical harmonics to order N;\n"
              "haar:WxH, daub4:WxH: wavelets over the cells"},
+    {.name = "direct", .type = OPTION_FLAG, .offset = AT(direct),
+     .help = "edit: direct light only, by triangles of the sky"},
+    {.name = "edit", .type = OPTION_TEXTS, .offset = AT(edit), .argument = "NAME",
+     .help = "edit: make the material, or that of the shape, of this id editable, too"},
+    {.name = "lights", .type = OPTION_INT, .offset = AT(lights), .argument = "N", .min = 8,
+     .max = 1000000, .def = "4000", .help = "edit: triangles of the sky; 400 for a preview"},
+    {.name = "light-samples", .type = OPTION_INT, .offset = AT(light_samples), .argument = "N",
+     .min = 2, .max = 65536, .def = "8",
+     .help = "edit: samples of other lights, and of what is not editable, for each of --spp"},
+    {.name = "packets", .type = OPTION_CHOICE, .offset = AT(packets), .argument = "NAME",
+     .def = "auto", .choices = precompute_packets,
+     .help = "edit: shadow rays of 16 pixels, or towards 16 lights, at once; auto: measured"},
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
-     .help = "samples per pixel; 0: what the scene asks for", .def = "0"},
+     .help = "samples per pixel; 0: what the scene asks for; edit: positions in a pixel, 0: 16",
+     .def = "0"},
     {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
      .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
     {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
@@ -62,9 +68,9 @@ static const struct option_spec options[] = {
      .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
     {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
      .help = "unknown scene parameters warn instead of failing"},
-    OPTION_THREADS(struct values, threads),
-    OPTION_QUIET(struct values, quiet),
-    OPTION_JSON(struct values, json),
+    OPTION_THREADS(struct precompute_values, threads),
+    OPTION_QUIET(struct precompute_values, quiet),
+    OPTION_JSON(struct precompute_values, json),
     OPTION_END,
 };
 
@@ -72,7 +78,7 @@ static void show_progress(void *user, double done) {
     progress_update(user, done, "");
 }
 
-static void report(const struct values *v, const struct relight_report *r) {
+static void report(const struct precompute_values *v, const struct relight_report *r) {
     char time[32];
     progress_format_seconds(r->seconds, time, sizeof time);
     if (r->rejected)
@@ -99,20 +105,25 @@ static void report(const struct values *v, const struct relight_report *r) {
     }
 }
 
-static int run_relight(const struct values *v, const char *command,
+struct job_options precompute_job(const struct precompute_values *v,
+                                  const struct scene_define *defines) {
+    return (struct job_options){
+        .scene = v->scene, .spp = v->spp, .receiver = v->receiver,
+        .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads,
+        .stop = stop_on_signals(),
+        .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
+                    .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],
+                    .height = v->size[1]}};
+}
+
+static int run_relight(const struct precompute_values *v, const char *command,
                        const struct scene_define *defines) {
     struct progress progress;
     struct relight_report result;
     progress_begin(&progress, "precompute", v->quiet);
     const struct relight_options o = {
-        .job = {.scene = v->scene, .spp = v->spp,
-                .receiver = v->receiver,
-                .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth,
-                .seed = (uint32_t)v->seed, .threads = v->threads, .stop = stop_on_signals(),
-                .reading = {.defines = defines, .define_count = v->defines.count,
-                            .lenient = v->lenient, .integrator = v->integrator,
-                            .sampler = v->sampler, .width = v->size[0], .height = v->size[1]}},
-        .basis = v->basis, .output = v->output, .storage = v->half ? TENSOR_BF16 : TENSOR_F32,
+        .job = precompute_job(v, defines), .basis = v->basis, .output = v->output,
+        .storage = v->half ? TENSOR_BF16 : TENSOR_F32,
         .most_memory = v->memory * 1e9, .dry_run = v->dry_run, .command = command,
         .version = RELUME_VERSION, .progress = v->quiet || v->dry_run ? NULL : show_progress,
         .user = &progress};
@@ -124,30 +135,37 @@ static int run_relight(const struct values *v, const char *command,
 }
 
 static int run(const void *values, const char *command) {
-    const struct values *v = values;
-    if (strcmp(v->kind, "relight") != 0) {
-        log_error("precompute %s: expected relight", v->kind);
+    const struct precompute_values *v = values;
+    const bool edit = strcmp(v->kind, "edit") == 0;
+    if (!edit && strcmp(v->kind, "relight") != 0) {
+        log_error("precompute %s: expected relight or edit", v->kind);
         return EXIT_USAGE;
     }
     if (v->quiet)
         log_set_level(LOG_WARN);
     struct arena arena = {0};
     const struct scene_define *defines = defines_parse(&v->defines, &arena);
-    const int code = defines ? run_relight(v, command, defines) : EXIT_USAGE;
+    const int code = !defines ? EXIT_USAGE
+                     : edit   ? precompute_edit_run(v, command, defines)
+                              : run_relight(v, command, defines);
     arena_finish(&arena);
     return code;
 }
 
 const struct subcommand subcommand_precompute = {
     .entry = {.name = "precompute", .help = "make a tensor, from which pictures are replayed",
-              .size = sizeof(struct values)},
+              .size = sizeof(struct precompute_values)},
     .options = {.options = options, .arguments = arguments,
                 .description = "precompute relight: how the picture of SCENE depends on its "
                                "lighting, with all bounces.\n`relume relight` then makes pictures "
-                               "under other lighting at the speed of memory.",
+                               "under other lighting at the speed of memory.\nprecompute edit: how "
+                               "it depends on its editable materials, under direct light;\n`relume "
+                               "edit` changes them.",
                 .examples = "  relume precompute relight room.xml -o room.safetensors --basis lights "
                             "--spp 256\n"
                             "  relume precompute relight car.xml -o car.safetensors --basis "
-                            "pixels:32x16 --dry-run\n"},
+                            "pixels:32x16 --dry-run\n"
+                            "  relume precompute edit tea.xml -o tea.safetensors --direct --edit "
+                            "pot --lights 400\n"},
     .run = run,
 };

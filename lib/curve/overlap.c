@@ -8,7 +8,8 @@ static const double FLAT = 1e-9; // radians: gammas closer than this count as eq
 void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXES],
                   const struct basis *const basis[OVERLAP_AXES], uint32_t axes,
                   struct arena *arena) {
-    *o = (struct overlap){.axes = axes, .tolerance = 1e-3, .depth = 6, .splits = 1};
+    *o = (struct overlap){.axes = axes, .tolerance = 1e-3, .depth = 6, .splits = 1,
+                          .to_local = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (uint32_t i = 0; i < axes; i++) {
         const struct basis *b = basis[i];
         o->axis[i] = (struct overlap_axis){*gamma[i], *b, 0};
@@ -16,6 +17,14 @@ void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXE
             o->axis[i].per_step = basis_intervals(b) / b->knots[basis_intervals(b)];
         o->share[i] = arena_alloc(arena, b->count * sizeof *o->share[i]);
     }
+}
+
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
 }
 
 // ---- gammas -------------------------------------------------------------------------------------
@@ -132,7 +141,7 @@ static void add_at(const struct overlap_axis *a, double gamma, double part, doub
         share[i] += part;
         return;
     }
-    const double t = fmin(fmax((gamma - k[i]) / (k[i + 1] - k[i]), 0), 1);
+    const double t = smaller(larger((gamma - k[i]) / (k[i + 1] - k[i]), 0), 1);
     share[i] += part * (1 - t);
     share[i + 1] += part * t;
 }
@@ -144,7 +153,7 @@ static void add_upper(const struct overlap_axis *a, const struct slope *s, doubl
     const uint32_t n = basis_intervals(b);
     const bool hat = b->kind == BASIS_HAT;
     uint32_t i = interval_of(a, s->g[0]);
-    double from = fmax(s->g[0], 0), F = below(s, from), M = hat ? moment_below(s, from, F) : 0;
+    double from = larger(s->g[0], 0), F = below(s, from), M = hat ? moment_below(s, from, F) : 0;
     for (; i < n && F < 1; i++) {
         const double low = b->knots[i], high = b->knots[i + 1];
         const double F1 = below(s, high), p = F1 - F;
@@ -154,7 +163,7 @@ static void add_upper(const struct overlap_axis *a, const struct slope *s, doubl
             share[i] += part * (p + beyond);
         } else {
             const double M1 = moment_below(s, high, F1);
-            const double up = fmin(fmax((M1 - M + (s->g[0] - low) * p) / (high - low), 0), p);
+            const double up = smaller(larger((M1 - M + (s->g[0] - low) * p) / (high - low), 0), p);
             share[i] += part * (p - up);
             share[i + 1] += part * (up + beyond);
             M = M1;
@@ -223,17 +232,17 @@ static bool within_one_interval(const struct overlap_axis *a, double least, doub
 static double error_of(const struct overlap_axis *a, const double g[OVERLAP_NODES], bool *single) {
     double bend = 0, least = g[0], most = g[0];
     for (int i = 0; i < 3; i++)
-        bend = fmax(bend, fabs(g[3 + i] - 0.5 * (g[i] + g[(i + 1) % 3])));
+        bend = larger(bend, fabs(g[3 + i] - 0.5 * (g[i] + g[(i + 1) % 3])));
     for (int i = 1; i < OVERLAP_NODES; i++) {
-        least = fmin(least, g[i]);
-        most = fmax(most, g[i]);
+        least = smaller(least, g[i]);
+        most = larger(most, g[i]);
     }
     *single = within_one_interval(a, least, most);
     if (*single && a->basis.kind == BASIS_BOX)
         return 0;
     const uint32_t i = interval_of(a, fabs(least));
     const double step = a->basis.knots[i + 1] - a->basis.knots[i];
-    return bend / fmax(most - least, a->basis.kind == BASIS_HAT ? step : FLAT);
+    return bend / larger(most - least, a->basis.kind == BASIS_HAT ? step : FLAT);
 }
 
 static void middle_of(const double a[3], const double b[3], double out[3]) {
@@ -268,11 +277,18 @@ static void finish_triangle(struct overlap_triangle *t) {
         t->part[i] /= sum;
 }
 
-static void add_triangle(struct overlap *o, const double wo[3], const struct overlap_triangle *t,
+void overlap_triangle_make(struct overlap_triangle *t, const double corner[OVERLAP_CORNERS][3]) {
+    for (int i = 0; i < OVERLAP_CORNERS; i++)
+        for (int k = 0; k < 3; k++)
+            t->node[i][k] = corner[i][k];
+    finish_triangle(t);
+}
+
+static void add_triangle(struct overlap *o, const struct overlap_triangle *t,
                          double gamma[OVERLAP_AXES][OVERLAP_NODES], double share, int depth,
                          const double light[OVERLAP_CHANNELS]);
 
-static void add_child(struct overlap *o, const double wo[3], const struct overlap_triangle *t,
+static void add_child(struct overlap *o, const struct overlap_triangle *t,
                       double gamma[OVERLAP_AXES][OVERLAP_NODES], int which, double share, int depth,
                       const double light[OVERLAP_CHANNELS]) {
     struct overlap_triangle child;
@@ -282,19 +298,23 @@ static void add_child(struct overlap *o, const double wo[3], const struct overla
             child.node[i][k] = t->node[parts[which][i]][k];
     finish_triangle(&child);
     for (int i = 0; i < 3; i++) {
-        struct angles a = angles_make(wo, child.node[3 + i]);
+        const double *w = child.node[3 + i];
+        double wi[3];
+        for (int k = 0; k < 3; k++)
+            wi[k] = o->to_local[k][0] * w[0] + o->to_local[k][1] * w[1] + o->to_local[k][2] * w[2];
+        struct angles a = angles_make(o->wo, wi);
         for (uint32_t x = 0; x < o->axes; x++) {
             g[x][i] = gamma[x][parts[which][i]];
             g[x][3 + i] = overlap_gamma(&o->axis[x].gamma, &a);
         }
     }
-    add_triangle(o, wo, &child, g, share * t->part[which], depth, light);
+    add_triangle(o, &child, g, share * t->part[which], depth, light);
 }
 
 static bool is_joint(const struct overlap *o, double g[OVERLAP_AXES][3]) {
     for (uint32_t x = 0; x < OVERLAP_AXES; x++)
-        if (x >= o->axes || within_one_interval(&o->axis[x], fmin(fmin(g[x][0], g[x][1]), g[x][2]),
-                                                fmax(fmax(g[x][0], g[x][1]), g[x][2])))
+        if (x >= o->axes || within_one_interval(&o->axis[x], smaller(smaller(g[x][0], g[x][1]), g[x][2]),
+                                                larger(larger(g[x][0], g[x][1]), g[x][2])))
             return false;
     return true;
 }
@@ -331,13 +351,13 @@ static void add_parts(struct overlap *o, const struct overlap_triangle *t,
     }
 }
 
-static void add_triangle(struct overlap *o, const double wo[3], const struct overlap_triangle *t,
+static void add_triangle(struct overlap *o, const struct overlap_triangle *t,
                          double gamma[OVERLAP_AXES][OVERLAP_NODES], double share, int depth,
                          const double light[OVERLAP_CHANNELS]) {
     bool single[OVERLAP_AXES] = {true, true};
     double error = 0;
     for (uint32_t x = 0; x < o->axes; x++)
-        error = fmax(error, 2 * share * error_of(&o->axis[x], gamma[x], &single[x]));
+        error = larger(error, 2 * share * error_of(&o->axis[x], gamma[x], &single[x]));
     if (error <= o->tolerance && (o->axes < 2 || single[0] || single[1])) {
         double g[OVERLAP_AXES][3];
         for (uint32_t x = 0; x < o->axes; x++)
@@ -348,12 +368,11 @@ static void add_triangle(struct overlap *o, const double wo[3], const struct ove
         add_parts(o, t, gamma, share, light);
     } else {
         for (int i = 0; i < 4; i++)
-            add_child(o, wo, t, gamma, i, share, depth - 1, light);
+            add_child(o, t, gamma, i, share, depth - 1, light);
     }
 }
 
-void overlap_add(struct overlap *o, const double wo[3], const struct overlap_triangle *t,
-                 double gamma[OVERLAP_AXES][OVERLAP_NODES],
-                 const double light[OVERLAP_CHANNELS]) {
-    add_triangle(o, wo, t, gamma, 1, o->depth, light);
+void overlap_add(struct overlap *o, const struct overlap_triangle *t,
+                 double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]) {
+    add_triangle(o, t, gamma, 1, o->depth, light);
 }

@@ -39,10 +39,12 @@ struct overlap {
     int splits;       // most further ones for the sake of two curves; 1
     double *share[OVERLAP_AXES]; // scratch, a number for each function
     double *sums;     // [functions of axis 0][of axis 1][3]
+    double wo[3];
+    double to_local[3][3]; // rows: the local axes in the space of triangles
 };
 
 // A triangle: directions at its corners, then in the middle of the edges from corner i to the next;
-// and what of it lies at each corner and between the middles (sum 1).
+// and what of it lies at each corner and between the middles (sum 1). In any space.
 struct overlap_triangle {
     double node[OVERLAP_NODES][3];
     double part[4];
@@ -52,12 +54,15 @@ void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXE
                   const struct basis *const basis[OVERLAP_AXES], uint32_t axes,
                   struct arena *arena);
 
+// The nodes of a triangle with these corners.
+void overlap_triangle_make(struct overlap_triangle *t, const double corner[OVERLAP_CORNERS][3]);
+
 // gamma as used here.
 double overlap_gamma(const struct gamma *g, struct angles *a);
 
 // Adds light * Delta to the sums; gamma: overlap_gamma at the nodes, by axis.
-void overlap_add(struct overlap *o, const double wo[3], const struct overlap_triangle *t,
-                 double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]);
+void overlap_add(struct overlap *o, const struct overlap_triangle *t, double gamma[OVERLAP_AXES][OVERLAP_NODES],
+                 const double light[OVERLAP_CHANNELS]);
 
 // The same of a point.
 void overlap_add_point(struct overlap *o, const double gamma[OVERLAP_AXES],

@@ -221,9 +221,7 @@ static void list_nodes(struct tree *t, struct light_triangles *out) {
             continue;
         struct light_triangle *l = &out->items[out->count++];
         *l = (struct light_triangle){
-            .corner = {c[0], c[1], c[2]},
-            .middle = {middle(c[0], c[1]), middle(c[1], c[2]), middle(c[2], c[0])},
-            .centre = centre_of(&n->cell), .solid_angle = solid_angle_within(c)};
+            .corner = {c[0], c[1], c[2]}, .centre = centre_of(&n->cell), .solid_angle = solid_angle_within(c)};
         for (int k = 0; k < 3; k++) {
             l->power[k] = n->sum.rgb[k];
             out->power[k] += n->sum.rgb[k];

@@ -16,8 +16,7 @@
 #include "math/vec.h"
 
 struct light_triangle {
-    struct direction corner[3], middle[3]; // middle[i] is that of the edge from corner i to the next
-    struct direction centre;
+    struct direction corner[3], centre;
     double solid_angle;
     double power[3]; // radiance integrated over it, per channel
 };

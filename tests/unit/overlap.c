@@ -41,43 +41,20 @@ static void make_triangle(const double middle[3], double size, double corner[3][
     }
 }
 
-static void nodes_of(const double corner[3][3], struct overlap_triangle *t) {
-    static const int parts[4][3] = {{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}};
-    double sum = 0;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) {
-            t->node[i][k] = corner[i][k];
-            t->node[3 + i][k] = corner[i][k] + corner[(i + 1) % 3][k];
-        }
-    for (int i = 3; i < 6; i++)
-        normalise(t->node[i]);
-    for (int i = 0; i < 4; i++) {
-        double u[3], v[3];
-        for (int k = 0; k < 3; k++) {
-            u[k] = t->node[parts[i][1]][k] - t->node[parts[i][0]][k];
-            v[k] = t->node[parts[i][2]][k] - t->node[parts[i][0]][k];
-        }
-        const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
-                     z = u[0] * v[1] - u[1] * v[0];
-        sum += t->part[i] = sqrt(x * x + y * y + z * z);
-    }
-    for (int i = 0; i < 4; i++)
-        t->part[i] /= sum;
-}
-
 static void shares_of(struct overlap *o, const double wo[3], const double corner[3][3],
                       size_t count) {
     const double light[3] = {1, 0, 2};
     struct overlap_triangle t;
     double gamma[OVERLAP_AXES][OVERLAP_NODES];
-    nodes_of(corner, &t);
+    overlap_triangle_make(&t, corner);
+    memcpy(o->wo, wo, sizeof o->wo);
     memset(o->sums, 0, count * 3 * sizeof *o->sums);
     for (int i = 0; i < OVERLAP_NODES; i++) {
         struct angles a = angles_make(wo, t.node[i]);
         for (uint32_t x = 0; x < o->axes; x++)
             gamma[x][i] = overlap_gamma(&o->axis[x].gamma, &a);
     }
-    overlap_add(o, wo, &t, gamma, light);
+    overlap_add(o, &t, gamma, light);
 }
 
 // Shares by points of a fine subdivision, weighted by the area each stands for.

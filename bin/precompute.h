@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the command line of `relume precompute` says, for each kind of tensor.
+#pragma once
+
+#include "base/options.h"
+#include "driver/job.h"
+
+struct precompute_values {
+    struct receiver receiver;
+    const char *kind, *scene, *output, *basis, *integrator, *sampler;
+    int spp, size[2], crop[4], max_depth, seed, threads;
+    int lights, light_samples, packets;
+    double memory;
+    bool half, dry_run, lenient, quiet, json, direct;
+    struct option_list defines, edit;
+};
+
+extern const char *const precompute_packets[]; // "auto", "pixels", "lights", NULL
+
+// The scene as asked for.
+struct job_options precompute_job(const struct precompute_values *v,
+                                  const struct scene_define *defines);
+
+// The exit code.
+int precompute_edit_run(const struct precompute_values *v, const char *command,
+                        const struct scene_define *defines);

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that reaches a visit, added to the coefficients of its terms.
+#include <string.h>
+
+#include "integrator/light_loop_data.h"
+#include "integrator/wide_angles.h"
+#include "integrator/wide_overlap.h"
+
+// A visit that is being added up.
+struct shading {
+    struct light_loop *loop;
+    const struct visit *visit;
+    const struct form *form;
+    struct overlap *terms;
+    const struct closure *outer, *inner;
+    vec3 rows[3];
+    struct direction wo;
+    double texture[FORM_TERMS][CURVE_CHANNELS]; // times the visit's weight
+};
+
+// ---- light from one direction -------------------------------------------------------------------
+
+// What a term makes of light from wi (in the shading frame), all but curves and f_q; the directions
+// in the frame of the closure are left in *a. false: nothing.
+static bool angles_to(const struct shading *s, vec3 wi, float *factor, struct angles *a) {
+    *factor = 1;
+    if (!editable_inside(s->outer, &wi, factor) || !(*factor > 0) || !(cos_theta(wi) > 0))
+        return false;
+    const struct direction i = direction_from(wi);
+    *a = angles_make((double[3]){s->wo.x, s->wo.y, s->wo.z}, (double[3]){i.x, i.y, i.z});
+    return true;
+}
+
+static void light_of_term(const struct shading *s, uint32_t term, struct angles *a,
+                          const double light[CURVE_CHANNELS], double out[CURVE_CHANNELS]) {
+    quotient_cos(&s->form->term[term].quotient, a, out);
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        out[k] *= s->texture[term][k] * light[k];
+}
+
+static void add_point(const struct shading *s, struct angles *a, const double light[CURVE_CHANNELS]) {
+    for (uint32_t t = 0; t < s->form->terms; t++) {
+        struct overlap *o = &s->terms[t];
+        double gamma[OVERLAP_AXES], share[CURVE_CHANNELS];
+        light_of_term(s, t, a, light, share);
+        for (uint32_t x = 0; x < o->axes; x++)
+            gamma[x] = overlap_gamma(&o->axis[x].gamma, a);
+        overlap_add_point(o, gamma, share);
+    }
+}
+
+// ---- triangles ----------------------------------------------------------------------------------
+
+// A node of sixteen triangles, in the frame of the closure.
+static struct wide3 local_nodes(const struct shading *s, const struct arrival *list, uint32_t count,
+                                int node) {
+    const struct overlap_triangle *triangles = s->loop->scene->triangles;
+    float d[3][WIDE_LANES];
+    for (uint32_t i = 0; i < WIDE_LANES; i++)
+        for (int k = 0; k < 3; k++)
+            d[k][i] = (float)triangles[list[i < count ? i : 0].light].node[node][k];
+    const struct wide3 w = {wide_load(d[0]), wide_load(d[1]), wide_load(d[2])};
+    return (struct wide3){wide_dot(wide3_of(s->rows[0]), w), wide_dot(wide3_of(s->rows[1]), w),
+                          wide_dot(wide3_of(s->rows[2]), w)};
+}
+
+static void gammas_of_term(const struct shading *s, uint32_t term, const struct wide3 nodes[],
+                           wide gamma[OVERLAP_AXES][OVERLAP_NODES]) {
+    const struct overlap *o = &s->terms[term];
+    for (uint32_t x = 0; x < o->axes; x++)
+        for (int i = 0; i < OVERLAP_NODES; i++)
+            gamma[x][i] = wide_gamma(&o->axis[x].gamma, s->wo, &nodes[i]);
+}
+
+static void add_triangles(const struct shading *s, const struct arrival *list, uint32_t count) {
+    const struct light_loop_scene *scene = s->loop->scene;
+    struct wide3 nodes[OVERLAP_NODES];
+    wide gamma[FORM_TERMS][OVERLAP_AXES][OVERLAP_NODES];
+    for (int i = 0; i < OVERLAP_NODES; i++)
+        nodes[i] = local_nodes(s, list, count, i);
+    for (uint32_t t = 0; t < s->form->terms; t++)
+        gammas_of_term(s, t, nodes, gamma[t]);
+    for (uint32_t i = 0; i < count; i++) {
+        const struct light_triangle *l = &scene->options.lights->items[list[i].light];
+        double light[CURVE_CHANNELS], share[CURVE_CHANNELS];
+        struct angles a;
+        float factor;
+        if (!angles_to(s, to_local(&s->visit->surface.point.frame, scene->centres[list[i].light]),
+                       &factor, &a))
+            continue;
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            light[k] = l->power[k] * (double)(factor * list[i].through[k]);
+        if (scene->options.as_points) {
+            add_point(s, &a, light);
+            continue;
+        }
+        for (uint32_t t = 0; t < s->form->terms; t++) {
+            struct overlap *o = &s->terms[t];
+            double g[OVERLAP_AXES][OVERLAP_NODES];
+            light_of_term(s, t, &a, light, share);
+            for (uint32_t x = 0; x < o->axes; x++)
+                for (int k = 0; k < OVERLAP_NODES; k++)
+                    g[x][k] = (double)gamma[t][x][k][i];
+            wide_overlap_add(o, &scene->triangles[list[i].light], g, share);
+        }
+    }
+}
+
+// Terms follow one another in the sums.
+static void aim_sums(const struct shading *s, double *sums) {
+    for (uint32_t t = 0; t < s->form->terms; t++) {
+        struct overlap *o = &s->terms[t];
+        o->sums = sums;
+        sums += (size_t)CURVE_CHANNELS * (o->axes > 0 ? o->axis[0].basis.count : 1) *
+                (o->axes > 1 ? o->axis[1].basis.count : 1);
+    }
+}
+
+// ---- other lights -------------------------------------------------------------------------------
+
+// One sample; `sign` is how it counts in the difference of the halves.
+static void add_sample(const struct shading *s, struct sampler *sampler, double share, double sign,
+                       double *sums, double *halves) {
+    const struct light_loop_scene *scene = s->loop->scene;
+    const struct surface *surface = &s->visit->surface;
+    const struct light_place place = {surface->p, s->rows[2]};
+    struct light_sample l;
+    struct angles a;
+    double light[CURVE_CHANNELS];
+    uint32_t index;
+    float factor;
+    const float u = sampler_1d(sampler);
+    if (!light_choice_sample(&scene->choice, scene->others, scene->other_count, &place, u,
+                             sampler_2d(sampler), &index, &l) ||
+        !angles_to(s, to_local(&surface->point.frame, l.wi), &factor, &a))
+        return;
+    const spectrum emission = l.late ? light_late_emission(&scene->others[index], l.wi) : l.emission;
+    const spectrum through = spectrum_is_black(emission) ? emission : world_transmittance(
+        scene->options.world, world_shadow_ray(surface, &l), -1, surface->point.wavelengths);
+    if (spectrum_is_black(through))
+        return;
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        light[k] = (double)(emission[k] * through[k] * factor / l.pdf_sa) * share;
+    add_point(s, &a, light);
+    if (!halves)
+        return;
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        light[k] *= sign;
+    aim_sums(s, halves);
+    add_point(s, &a, light);
+    aim_sums(s, sums);
+}
+
+static void add_others(const struct shading *s, double *sums, double *halves) {
+    const struct light_loop_options *o = &s->loop->scene->options;
+    const struct visit *v = s->visit;
+    const uint32_t x = (uint32_t)s->loop->x + v->pixel % LIGHT_LOOP_SIDE;
+    const uint32_t y = (uint32_t)s->loop->y + v->pixel / LIGHT_LOOP_SIDE;
+    const uint32_t all = o->positions * o->light_samples;
+    for (uint32_t i = 0; i < o->light_samples; i++) {
+        struct sampler sampler = sampler_start(o->sampler, x, y, v->position * o->light_samples + i,
+                                               all, 2, o->seed + 1);
+        add_sample(s, &sampler, 1.0 / all, i % 2 ? -1 : 1, sums, halves);
+    }
+}
+
+// ---- a pixel ------------------------------------------------------------------------------------
+
+static bool begin_visit(struct shading *s, struct light_loop *l, const struct visit *v) {
+    s->visit = v;
+    s->inner = visit_resolve(v, &l->stack, &s->outer, s->rows);
+    if (!s->inner)
+        return false;
+    s->wo = editable_wo(s->inner);
+    for (uint32_t t = 0; t < s->form->terms; t++) {
+        struct overlap *o = &s->terms[t];
+        const spectrum texture = editable_texture_at(s->inner, t) * v->weight;
+        o->wo[0] = s->wo.x;
+        o->wo[1] = s->wo.y;
+        o->wo[2] = s->wo.z;
+        for (int k = 0; k < 3; k++) {
+            s->texture[t][k] = (double)texture[k];
+            for (int i = 0; i < 3; i++)
+                o->to_local[k][i] = (double)s->rows[k][i];
+        }
+    }
+    return true;
+}
+
+static void add_visit(struct shading *s, struct light_loop *l, size_t visit, double *sums,
+                      double *halves) {
+    const struct arrival *list = l->arrivals + visit * l->most;
+    const uint32_t count = l->visits[visit].count;
+    for (uint32_t i = 0; i < count; i += WIDE_LANES)
+        add_triangles(s, list + i, count - i < WIDE_LANES ? count - i : WIDE_LANES);
+    if (l->scene->other_count > 0)
+        add_others(s, sums, halves);
+}
+
+void light_loop_sum(struct light_loop *l, uint32_t pixel, uint32_t object, double *sums,
+                    double *halves) {
+    const struct light_loop_scene *scene = l->scene;
+    const size_t n = (size_t)scene->coefficients[object] * CURVE_CHANNELS;
+    struct shading s = {.loop = l, .form = scene->options.objects[object].form,
+                        .terms = l->overlaps[object]};
+    memset(sums, 0, n * sizeof *sums);
+    if (halves)
+        memset(halves, 0, n * sizeof *halves);
+    aim_sums(&s, sums);
+    for (size_t i = 0; i < l->visit_count; i++) {
+        const struct visit *v = &l->visits[i];
+        if (v->pixel == pixel && v->object == object && begin_visit(&s, l, v))
+            add_visit(&s, l, i, sums, halves);
+    }
+}
