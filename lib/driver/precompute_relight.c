@@ -319,13 +319,7 @@ static bool write_tensor(struct plan *p, struct relight_report *report) {
 
 // Traces a few tiles and throws them away, to tell how long all would take.
 static void estimate(struct plan *p, struct relight_report *report) {
-    const uint64_t tiles = tensor_tiles(&p->block), values = tensor_bytes(&p->block);
-    struct tensor_sums *sums;
-    p->sums.values = mem_array(values, 1);
-    p->sums.halves = mem_array(values, 1);
-    p->sums.fixed = mem_array(3 * (size_t)p->sums.width * (size_t)p->sums.height, sizeof(float));
-    (void)tiles;
-    sums = tensor_sums_create(&p->sums);
+    struct tensor_sums *sums = tensor_sums_create(&p->sums); // has no memory to store in
     const uint32_t all = tensor_sums_tile_count(sums), n = all < DRY_TILES ? all : DRY_TILES;
     const double start = time_seconds();
     const uint32_t samples = p->samples;
@@ -333,9 +327,6 @@ static void estimate(struct plan *p, struct relight_report *report) {
     trace(p, sums, (all - n) / 2, n, report);
     report->seconds = (time_seconds() - start) * all / n * samples / p->samples;
     tensor_sums_destroy(sums);
-    mem_free(p->sums.values);
-    mem_free(p->sums.halves);
-    mem_free(p->sums.fixed);
 }
 
 static bool run(const struct relight_options *o, struct basis *b, struct job *job,

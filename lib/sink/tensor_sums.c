@@ -168,6 +168,8 @@ static void view_close(struct sink *s) {
     uint64_t at = v->sums->first[v->tile];
     if (o->basis.transformed)
         transform_tile(v);
+    if (!o->values)
+        return;
     for (int y = v->wanted.y0; y < v->wanted.y1; y++)
         for (int x = v->wanted.x0; x < v->wanted.x1; x++, at++) {
             const double *a = v->cells + tile_grid_inside(x, y) * HALVES * half, *b = a + half;

@@ -16,7 +16,8 @@ struct tensor_sums_options {
     uint32_t samples;           // a pixel gets in all: even
     struct source_basis basis;
     enum tensor_storage storage;
-    void *values, *halves;      // of the one block, [tiles][coefficients][3][64]
+    void *values, *halves;      // of the one block, [tiles][coefficients][3][64]; NULL: all is
+                                // traced and nothing kept
     float *fixed;               // 3 planes of the whole picture
 };
 
