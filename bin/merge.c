@@ -37,10 +37,8 @@ static bool write_journal(const char *output, const struct film_union *u) {
     char path[4096];
     struct sums_node node;
     const bool is_short = film_short_block(u->film, &node);
-    if (snprintf(path, sizeof path, "%s.journal", output) >= (int)sizeof path) {
-        log_error("%s: name is too long", output);
+    if (!journal_path(output, path, sizeof path))
         return false;
-    }
     struct journal *j = journal_create(path, u->head, film_sums(u->film), is_short ? &node : NULL);
     journal_close(j);
     return j != NULL;

@@ -31,21 +31,15 @@ static bool restore(struct checkpoint *c, struct film *film) {
 
 bool checkpoint_open(struct checkpoint *c, const struct checkpoint_options *options,
                      const struct job *job, struct film *film) {
-    struct sums_node node;
     *c = (struct checkpoint){.options = *options, .job = job};
     c->head = film_head_create(job, film, options->command, options->version);
-    if (snprintf(c->path, sizeof c->path, "%s.journal", options->output) >= (int)sizeof c->path) {
-        log_error("%s: name is too long", options->output);
+    if (!journal_path(options->output, c->path, sizeof c->path) ||
+        (options->resume && !restore(c, film)))
         return false;
-    }
-    if (options->resume && !restore(c, film))
-        return false;
-    if (options->keep) {
-        const bool is_short = film_short_block(film, &node);
-        c->journal = journal_create(c->path, c->head, film_sums(film), is_short ? &node : NULL);
-        if (!c->journal)
-            return false;
-    }
+    c->keeping = options->keep;
+    if (c->keeping && !options->resume && file_exists(c->path))
+        log_warn("%s: is there from an earlier run and will be replaced; --resume goes on from it",
+                 c->path);
     c->start = time_seconds();
     c->journal_interval = options->seconds;
     c->preview_interval = options->preview_seconds;
@@ -54,14 +48,19 @@ bool checkpoint_open(struct checkpoint *c, const struct checkpoint_options *opti
     return true;
 }
 
+// The journal begins with the first sums that are worth keeping.
 static bool update_journal(struct checkpoint *c, const struct film *film) {
     struct sums_node node;
-    const bool is_short = film_short_block(film, &node);
-    if (!c->journal || journal_update(c->journal, film_sums(film), is_short ? &node : NULL))
+    const struct sums_node *last = film_short_block(film, &node) ? &node : NULL;
+    if (!c->keeping)
         return true;
-    journal_close(c->journal); // what it holds stays valid; the picture can still be had
-    c->journal = NULL;
-    return false;
+    if (c->journal) {
+        c->keeping = journal_update(c->journal, film_sums(film), last);
+    } else {
+        c->journal = journal_create(c->path, c->head, film_sums(film), last);
+        c->keeping = c->journal != NULL;
+    }
+    return c->keeping; // if not, what the file holds stays valid; the picture can still be had
 }
 
 // The next time, when doing it took so long.
@@ -73,7 +72,7 @@ static double next_time(double *interval, double took) {
 
 void checkpoint_tick(struct checkpoint *c, const struct film *film) {
     const double now = time_seconds();
-    if (c->options.seconds > 0 && c->journal && now >= c->next_journal) {
+    if (c->options.seconds > 0 && c->keeping && now >= c->next_journal) {
         update_journal(c, film);
         c->next_journal = next_time(&c->journal_interval, time_seconds() - now);
     }

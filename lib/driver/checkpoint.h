@@ -19,14 +19,15 @@ struct checkpoint {
     struct checkpoint_options options;
     const struct job *job;
     struct json *head;
-    struct journal *journal; // NULL: none, or no more
+    bool keeping;            // a journal is asked for, and could be written so far
+    struct journal *journal; // NULL: not begun
     char path[4096];
     double start, next_journal, next_preview; // monotonic seconds
     double journal_interval, preview_interval;
 };
 
-// Restores the film from the journal when resuming, and begins a new journal. false after an error
-// message: what is on the disk is untouched.
+// Restores the film from the journal when resuming; a new one takes its place at the first update.
+// false after an error message. What is on the disk is untouched.
 bool checkpoint_open(struct checkpoint *c, const struct checkpoint_options *options,
                      const struct job *job, struct film *film);
 // Called between passes: does what is due. Intervals widen so that all of it takes at most 3 %.

@@ -26,15 +26,15 @@ static void close_parts(struct part *parts, size_t count) {
     mem_free(parts);
 }
 
-// The journal of PICTURE is PICTURE.journal, unless the path names a journal already.
-static bool journal_path(const char *path, char *out, size_t size) {
+// Of a picture, or of a journal itself.
+static bool find_journal(const char *path, char *out, size_t size) {
     char extension[16];
     file_extension(path, extension, sizeof extension);
-    const bool is_journal = strcmp(extension, "journal") == 0;
-    if (snprintf(out, size, "%s%s", path, is_journal ? "" : ".journal") >= (int)size) {
-        log_error("%s: name is too long", path);
+    const bool is_journal = strcmp(extension, "journal") == 0 && strlen(path) < size;
+    if (is_journal)
+        strcpy(out, path);
+    else if (!journal_path(path, out, size))
         return false;
-    }
     if (file_exists(out))
         return true;
     log_error("%s: has no journal (%s); render it with --samples, --checkpoint or --resume", path, out);
@@ -53,7 +53,7 @@ static bool sums_fit(const struct part *p) {
 
 static bool open_part(struct part *p, const char *path, const struct part *first,
                       struct arena *arena) {
-    return journal_path(path, p->path, sizeof p->path) &&
+    return find_journal(path, p->path, sizeof p->path) &&
            journal_read(p->path, &p->head, &p->sums) &&
            film_head_options(p->head, p->path, &p->options, arena) && sums_fit(p) &&
            (p == first || film_head_agrees(first->head, first->path, p->head, p->path, false));

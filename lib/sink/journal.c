@@ -120,6 +120,13 @@ static bool rewrite(struct journal *j, const struct sums *sums,
     return false;
 }
 
+bool journal_path(const char *picture, char *path, size_t size) {
+    const int n = snprintf(path, size, "%s.journal", picture);
+    if (n < 0 || (size_t)n >= size)
+        log_error("%s: name is too long", picture);
+    return n >= 0 && (size_t)n < size;
+}
+
 struct journal *journal_create(const char *path, const struct json *head, const struct sums *sums,
                                const struct sums_node *short_block) {
     struct journal *j = mem_array(1, sizeof *j);

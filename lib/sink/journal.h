@@ -17,6 +17,9 @@
 
 struct journal;
 
+// Where the journal of a picture is: PICTURE.journal. false after an error message: too long.
+bool journal_path(const char *picture, char *path, size_t size);
+
 // Writes a journal with these sums and, unless NULL, a short block, in place of the file that may be
 // there, and keeps it open for more. NULL after an error message: the old file is as it was.
 struct journal *journal_create(const char *path, const struct json *head, const struct sums *sums,
