@@ -178,10 +178,12 @@ const struct entry *object_entry(const struct registry *registry, const struct x
     const char *type = xml_get(node, "type");
     const struct entry *e = registry_find(registry, type);
     const char *nearest = e ? NULL : registry_nearest(registry, type);
-    if (!e)
-        log_error_at(node->at, "%s \"%s\" is not known%s%s%s", registry->kind, type,
-                     nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                     nearest ? "\"?" : "");
+    if (nearest)
+        log_error_at(node->at, "%s \"%s\" is not known; did you mean \"%s\"?", registry->kind, type,
+                     nearest);
+    else if (!e)
+        log_error_at(node->at, "%s \"%s\" is not known; relume help %s lists those that are",
+                     registry->kind, type, registry->kind);
     return e;
 }
 

@@ -107,6 +107,11 @@ static bool parse_file(const char *text, const char *path, struct samples *s) {
             log_error("%s:%d: expected a wavelength in nm and a value", path, line);
             return false;
         }
+        if (count == 2 && s->count > 0 && v[0] < s->x[s->count - 1]) {
+            log_error("%s:%d: wavelength %g nm stands after %g nm, expected ascending ones", path,
+                      line, v[0], s->x[s->count - 1]);
+            return false;
+        }
         if (count == 2)
             samples_add(s, v[0], v[1]);
         c += strcspn(c, "\n");
