@@ -26,90 +26,7 @@
 #include <string.h>
 
 #include "math/ior.h"
-#include "scene/gltf.h"
-
-// A material while it is made.
-struct making {
-    struct gltf *g;
-    struct reader *r;
-    const struct json *material, *pbr;
-    const struct json *transmission, *volume, *clearcoat, *sheen, *anisotropy, *specular;
-    int colour_channels; // of COLOR_0: 0, 3, 4
-    double base[4], metallic, roughness, eta;
-    struct gltf_material *out;
-};
-
-static const struct json *texture_of(const struct making *m, const struct json *object,
-                                     const char *key) {
-    const struct json *info = json_get(object, key);
-    if (!info)
-        return NULL;
-    const int set = gltf_uv_set(info), own = m->out->wants.uv_set;
-    if (set != own && set < GLTF_MOST_UV_SETS)
-        m->out->wants.more_uvs |= (uint64_t)1 << set;
-    if (set != own && strcmp(key, "normalTexture") == 0)
-        gltf_warn(m->g, "a normal map is looked up by TEXCOORD_%d, but its tangents follow "
-                  "TEXCOORD_%d", set, own);
-    return info;
-}
-
-static bool is_white(const double *v, int count) {
-    for (int i = 0; i < count; i++)
-        if (v[i] != 1)
-            return false;
-    return true;
-}
-
-static void add_constant(const struct making *m, struct xml_node *parent, const char *name,
-                         const double *factor, int channels) {
-    if (channels == 3)
-        tree_triple(m->r, parent, "rgb", name, factor);
-    else
-        tree_number(m->r, parent, name, factor[0]);
-}
-
-// A parameter that is a factor, or a factor times a channel of a texture.
-static bool add_factor(const struct making *m, struct xml_node *parent, const char *name,
-                       const double *factor, int channels, const struct json *info,
-                       const char *channel, bool raw) {
-    struct gltf_texture_use use = {name, channel, raw, m->out->wants.uv_set};
-    if (!info) {
-        add_constant(m, parent, name, factor, channels);
-        return true;
-    }
-    if (is_white(factor, channels))
-        return gltf_add_texture(m->g, m->r, parent, info, &use);
-    struct xml_node *product = tree_add(m->r, parent, "texture", "product", NULL);
-    xml_set(product, "name", name, m->r->arena);
-    use.name = "texture_0";
-    const double grey[3] = {factor[0], factor[0], factor[0]};
-    tree_triple(m->r, product, "rgb", "texture_1", channels == 3 ? factor : grey);
-    return gltf_add_texture(m->g, m->r, product, info, &use);
-}
-
-static bool add_number(const struct making *m, struct xml_node *parent, const char *name,
-                       double factor, const struct json *info, const char *channel) {
-    return add_factor(m, parent, name, &factor, 1, info, channel, true);
-}
-
-// A parent for one factor of a product with a vertex attribute, which is put in already.
-static struct xml_node *under_attribute(const struct making *m, struct xml_node *parent,
-                                        const char **name, const char *attribute) {
-    struct xml_node *product = tree_add(m->r, parent, "texture", "product", NULL);
-    xml_set(product, "name", *name, m->r->arena);
-    struct xml_node *colours = tree_add(m->r, product, "texture", "mesh_attribute", NULL);
-    xml_set(colours, "name", "texture_1", m->r->arena);
-    tree_text(m->r, colours, "string", "name", attribute);
-    *name = "texture_0";
-    return product;
-}
-
-static bool add_base_colour(const struct making *m, struct xml_node *node, const char *name) {
-    if (m->colour_channels)
-        node = under_attribute(m, node, &name, "vertex_color");
-    return add_factor(m, node, name, m->base, 3, texture_of(m, m->pbr, "baseColorTexture"), NULL,
-                      false);
-}
+#include "scene/gltf_making.h"
 
 // ---- parts of the principled material -------------------------------------------------------
 
@@ -120,7 +37,7 @@ static double index_of(double F0) {
 }
 
 // KHR_materials_specular: F0 = ((n - 1) / (n + 1))^2 specularColorFactor specularFactor
-static void apply_specular(struct making *m) {
+static void apply_specular(struct gltf_making *m) {
     const struct json *e = m->specular;
     double colour[3] = {1, 1, 1};
     if (!e)
@@ -139,7 +56,7 @@ static void apply_specular(struct making *m) {
     m->eta = index_of(root * root * mean * gltf_number(e, "specularFactor", 1));
 }
 
-static bool add_clearcoat(const struct making *m, struct xml_node *node) {
+static bool add_clearcoat(const struct gltf_making *m, struct xml_node *node) {
     const struct json *e = m->clearcoat;
     const double strength = gltf_number(e, "clearcoatFactor", 0);
     if (strength == 0)
@@ -151,10 +68,11 @@ static bool add_clearcoat(const struct making *m, struct xml_node *node) {
     const double root = gltf_number(e, "clearcoatRoughnessFactor", 0);
     // clearcoat_gloss runs from alpha 0.1 to 0.001
     tree_number(m->r, node, "clearcoat_gloss", fmin(fmax((0.1 - root * root) / 0.099, 0), 1));
-    return add_number(m, node, "clearcoat", strength, texture_of(m, e, "clearcoatTexture"), "r");
+    return gltf_add_number(m, node, "clearcoat", strength,
+                           gltf_texture_of(m, e, "clearcoatTexture"), "r");
 }
 
-static void add_sheen(const struct making *m, struct xml_node *node) {
+static void add_sheen(const struct gltf_making *m, struct xml_node *node) {
     double colour[3] = {0, 0, 0};
     if (!gltf_numbers(m->sheen, "sheenColorFactor", 3, colour))
         return;
@@ -165,13 +83,13 @@ static void add_sheen(const struct making *m, struct xml_node *node) {
 }
 
 // KHR_materials_anisotropy: alpha along the tangent mix(alpha, 1, strength^2), across it alpha.
-static void widths(const struct making *m, double alpha[2]) {
+static void widths(const struct gltf_making *m, double alpha[2]) {
     const double s = gltf_number(m->anisotropy, "anisotropyStrength", 0);
     alpha[1] = fmax(m->roughness * m->roughness, 1e-3);
     alpha[0] = alpha[1] + (1 - alpha[1]) * s * s;
 }
 
-static void warn_of_turn(const struct making *m) {
+static void warn_of_turn(const struct gltf_making *m) {
     if (gltf_number(m->anisotropy, "anisotropyRotation", 0) != 0 ||
         json_get(m->anisotropy, "anisotropyTexture"))
         gltf_warn(m->g, "anisotropyRotation and anisotropyTexture are not used: highlights stretch "
@@ -179,8 +97,8 @@ static void warn_of_turn(const struct making *m) {
 }
 
 // principled: alpha = roughness^2 / aspect and times aspect, aspect^2 = 1 - 0.9 anisotropic
-static bool add_roughness(const struct making *m, struct xml_node *node) {
-    const struct json *info = texture_of(m, m->pbr, "metallicRoughnessTexture");
+static bool add_roughness(const struct gltf_making *m, struct xml_node *node) {
+    const struct json *info = gltf_texture_of(m, m->pbr, "metallicRoughnessTexture");
     double roughness = m->roughness;
     if (m->anisotropy) {
         double alpha[2];
@@ -190,41 +108,42 @@ static bool add_roughness(const struct making *m, struct xml_node *node) {
         tree_number(m->r, node, "anisotropic", fmin((1 - ratio) / 0.9, 1));
         warn_of_turn(m);
     }
-    return add_number(m, node, "roughness", roughness, info, "g");
+    return gltf_add_number(m, node, "roughness", roughness, info, "g");
 }
 
 // ---- whole materials ------------------------------------------------------------------------
 
-static struct xml_node *start(const struct making *m, struct xml_node *parent, const char *type) {
+static struct xml_node *start(const struct gltf_making *m, struct xml_node *parent,
+                              const char *type) {
     return tree_add(m->r, parent, "bsdf", type, NULL);
 }
 
-static bool add_thin(const struct making *m, struct xml_node *parent) {
+static bool add_thin(const struct gltf_making *m, struct xml_node *parent) {
     struct xml_node *node = start(m, parent, "principledthin");
-    if (m->metallic > 0 && texture_of(m, m->pbr, "metallicRoughnessTexture"))
+    if (m->metallic > 0 && gltf_texture_of(m, m->pbr, "metallicRoughnessTexture"))
         gltf_warn(m->g, "thin sheets that transmit have no metallic part here");
     tree_number(m->r, node, "eta", fmax(m->eta, 0.01));
     const double strength = gltf_number(m->transmission, "transmissionFactor", 0);
-    return add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
-           add_number(m, node, "spec_trans", strength,
-                      texture_of(m, m->transmission, "transmissionTexture"), "r");
+    return gltf_add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
+           gltf_add_number(m, node, "spec_trans", strength,
+                           gltf_texture_of(m, m->transmission, "transmissionTexture"), "r");
 }
 
-static bool add_solid(const struct making *m, struct xml_node *parent) {
+static bool add_solid(const struct gltf_making *m, struct xml_node *parent) {
     struct xml_node *node = start(m, parent, "principled");
-    const struct json *info = texture_of(m, m->pbr, "metallicRoughnessTexture");
+    const struct json *info = gltf_texture_of(m, m->pbr, "metallicRoughnessTexture");
     tree_number(m->r, node, "eta", m->eta);
     add_sheen(m, node);
     const double strength = gltf_number(m->transmission, "transmissionFactor", 0);
-    return add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
-           add_number(m, node, "metallic", m->metallic, info, "b") && add_clearcoat(m, node) &&
+    return gltf_add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
+           gltf_add_number(m, node, "metallic", m->metallic, info, "b") && add_clearcoat(m, node) &&
            (strength == 0 ||
-            add_number(m, node, "spec_trans", strength,
-                       texture_of(m, m->transmission, "transmissionTexture"), "r"));
+            gltf_add_number(m, node, "spec_trans", strength,
+                            gltf_texture_of(m, m->transmission, "transmissionTexture"), "r"));
 }
 
 // A stretched metal: principled cannot stretch as far as glTF does.
-static bool add_brushed_metal(const struct making *m, struct xml_node *parent) {
+static bool add_brushed_metal(const struct gltf_making *m, struct xml_node *parent) {
     double alpha[2];
     widths(m, alpha);
     warn_of_turn(m);
@@ -233,15 +152,15 @@ static bool add_brushed_metal(const struct making *m, struct xml_node *parent) {
     tree_text(m->r, node, "string", "material", "none");
     tree_number(m->r, node, "alpha_u", alpha[0]);
     tree_number(m->r, node, "alpha_v", alpha[1]);
-    return add_base_colour(m, node, "specular_reflectance");
+    return gltf_add_base_colour(m, node, "specular_reflectance");
 }
 
 // KHR_materials_volume: attenuationColor is what is left after attenuationDistance.
-static void make_interior(const struct making *m) {
+static void make_interior(const struct gltf_making *m) {
     double colour[3] = {1, 1, 1}, absorption[3];
     const double distance = gltf_number(m->volume, "attenuationDistance", INFINITY);
     if (!gltf_numbers(m->volume, "attenuationColor", 3, colour) || !isfinite(distance) ||
-        is_white(colour, 3))
+        gltf_is_white(colour, 3))
         return;
     for (int k = 0; k < 3; k++)
         absorption[k] = -log(fmax(colour[k], 1e-6)) / distance;
@@ -253,7 +172,7 @@ static void make_interior(const struct making *m) {
 }
 
 // The share that is there: alpha of colour, texture and vertices.
-static bool add_opacity(const struct making *m, struct xml_node *node) {
+static bool add_opacity(const struct gltf_making *m, struct xml_node *node) {
     const char *name = "opacity", *mode = json_text(json_get(m->material, "alphaMode"));
     if (strcmp(mode, "MASK") == 0) {
         struct xml_node *step = tree_add(m->r, node, "texture", "step", NULL);
@@ -263,18 +182,19 @@ static bool add_opacity(const struct making *m, struct xml_node *node) {
         name = "value";
     }
     if (m->colour_channels == 4)
-        node = under_attribute(m, node, &name, "vertex_alpha");
-    return add_number(m, node, name, m->base[3], texture_of(m, m->pbr, "baseColorTexture"), "a");
+        node = gltf_under_attribute(m, node, &name, "vertex_alpha");
+    return gltf_add_number(m, node, name, m->base[3],
+                           gltf_texture_of(m, m->pbr, "baseColorTexture"), "a");
 }
 
-static bool has_alpha(const struct making *m) {
+static bool has_alpha(const struct gltf_making *m) {
     const char *mode = json_text(json_get(m->material, "alphaMode"));
     return mode && (strcmp(mode, "MASK") == 0 || strcmp(mode, "BLEND") == 0) &&
            (m->base[3] != 1 || m->colour_channels == 4 || json_get(m->pbr, "baseColorTexture"));
 }
 
 // normalmap with xy scaled about 0.5 where the file asks for that
-static bool add_normal_map(const struct making *m, struct xml_node *node,
+static bool add_normal_map(const struct gltf_making *m, struct xml_node *node,
                            const struct json *info) {
     const double s = gltf_number(info, "scale", 1);
     struct gltf_texture_use use = {"normalmap", NULL, true, m->out->wants.uv_set};
@@ -289,11 +209,11 @@ static bool add_normal_map(const struct making *m, struct xml_node *node,
     return gltf_add_texture(m->g, m->r, product, info, &use);
 }
 
-static bool transmits(const struct making *m) {
+static bool transmits(const struct gltf_making *m) {
     return gltf_number(m->transmission, "transmissionFactor", 0) > 0;
 }
 
-static bool add_surface(const struct making *m, struct xml_node *parent) {
+static bool add_surface(const struct gltf_making *m, struct xml_node *parent) {
     const bool thick = gltf_number(m->volume, "thicknessFactor", 0) > 0;
     const bool metal = m->metallic == 1 && !json_get(m->pbr, "metallicRoughnessTexture");
     if (transmits(m) && !thick)
@@ -306,7 +226,7 @@ static bool add_surface(const struct making *m, struct xml_node *parent) {
 }
 
 // mask ( normalmap ( twosided ( surface ) ) ) as far as each is needed
-static bool add_layers(const struct making *m, struct xml_node *outer) {
+static bool add_layers(const struct gltf_making *m, struct xml_node *outer) {
     struct xml_node *node = outer;
     if (has_alpha(m)) {
         node = start(m, node, "mask");
@@ -314,7 +234,7 @@ static bool add_layers(const struct making *m, struct xml_node *outer) {
             return false;
     }
     const bool two_sided = !transmits(m);
-    const struct json *normal = texture_of(m, m->material, "normalTexture");
+    const struct json *normal = gltf_texture_of(m, m->material, "normalTexture");
     if (two_sided)
         node = start(m, node, "twosided");
     if (normal) {
@@ -327,7 +247,7 @@ static bool add_layers(const struct making *m, struct xml_node *outer) {
 
 // ---- reading --------------------------------------------------------------------------------
 
-static void warn_of_extensions(const struct making *m) {
+static void warn_of_extensions(const struct gltf_making *m) {
     static const char *const unknown[] = {
         "KHR_materials_dispersion", "KHR_materials_iridescence", "KHR_materials_unlit",
         "KHR_materials_pbrSpecularGlossiness", "KHR_materials_diffuse_transmission"};
@@ -336,7 +256,7 @@ static void warn_of_extensions(const struct making *m) {
             gltf_warn(m->g, "%s is not used", unknown[i]);
 }
 
-static void read_factors(struct making *m) {
+static void read_factors(struct gltf_making *m) {
     const struct json *material = m->material;
     m->pbr = json_get(material, "pbrMetallicRoughness");
     m->transmission = gltf_extension(material, "KHR_materials_transmission");
@@ -357,10 +277,10 @@ static void read_factors(struct making *m) {
     apply_specular(m);
 }
 
-static void read_emission(const struct making *m) {
+static void read_emission(const struct gltf_making *m) {
     struct gltf_material *out = m->out;
     gltf_numbers(m->material, "emissiveFactor", 3, out->emission);
-    out->emission_texture = texture_of(m, m->material, "emissiveTexture");
+    out->emission_texture = gltf_texture_of(m, m->material, "emissiveTexture");
     const double strength = gltf_number(
         gltf_extension(m->material, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
     for (int k = 0; k < 3; k++) {
@@ -385,7 +305,7 @@ static int main_uv_set(const struct json *material) {
 bool gltf_make_material(struct gltf *g, struct reader *r, struct xml_node *scene, int64_t index,
                         int colour_channels, struct gltf_material *out) {
     const struct json *material = index < 0 ? NULL : gltf_item(g, "materials", (size_t)index);
-    struct making m = {.g = g, .r = r, .material = material, .colour_channels = colour_channels,
+    struct gltf_making m = {.g = g, .r = r, .material = material, .colour_channels = colour_channels,
                        .out = out};
     *out = (struct gltf_material){.wants.uv_set = main_uv_set(material)};
     read_factors(&m);
