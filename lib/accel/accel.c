@@ -13,6 +13,7 @@
 
 #include <stdatomic.h>
 #include <stdio.h>
+#include <string.h>
 
 #if defined(__SSE__)
 #include <immintrin.h>
@@ -273,30 +274,6 @@ bool accel_occluded(const struct accel *a, const struct ray *ray) {
     return r.tfar < 0;
 }
 
-static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, int valid[ACCEL_PACKET],
-                        struct RTCRay16 *p) {
-    for (int i = 0; i < ACCEL_PACKET; i++) {
-        const struct ray *r = &rays[i];
-        valid[i] = active >> i & 1 ? -1 : 0;
-        p->org_x[i] = r->o[0];
-        p->org_y[i] = r->o[1];
-        p->org_z[i] = r->o[2];
-        p->dir_x[i] = r->d[0];
-        p->dir_y[i] = r->d[1];
-        p->dir_z[i] = r->d[2];
-        p->tnear[i] = r->tmin;
-        p->tfar[i] = r->tmax;
-        p->time[i] = 0;
-        p->mask[i] = ~0u;
-        p->id[i] = (unsigned)i;
-        p->flags[i] = 0;
-    }
-}
-
-bool accel_mixes_packets(const struct accel *a) {
-    return a->few != NULL;
-}
-
 static void rays_from(const struct ray rays[ACCEL_PACKET], uint32_t active, struct accel_rays *p) {
     const size_t fields[3] = {offsetof(struct ray, o), offsetof(struct ray, d),
                               offsetof(struct ray, tmin)};
@@ -310,6 +287,31 @@ static void rays_from(const struct ray rays[ACCEL_PACKET], uint32_t active, stru
     const wide_mask traced = wide_mask_of(active);
     *p = (struct accel_rays){{f[0][0], f[0][1], f[0][2]}, {f[1][0], f[1][1], f[1][2]}, f[2][0],
                              wide_select(traced, f[2][1], wide_of(-INFINITY))};
+}
+
+static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, int valid[ACCEL_PACKET],
+                        struct RTCRay16 *p) {
+    const wide_int first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const wide_mask traced = wide_mask_of(active);
+    struct accel_rays r;
+    rays_from(rays, active, &r);
+    memcpy(valid, &traced, sizeof traced);
+    memcpy(p->org_x, &r.o.x, sizeof r.o.x);
+    memcpy(p->org_y, &r.o.y, sizeof r.o.y);
+    memcpy(p->org_z, &r.o.z, sizeof r.o.z);
+    memcpy(p->dir_x, &r.d.x, sizeof r.d.x);
+    memcpy(p->dir_y, &r.d.y, sizeof r.d.y);
+    memcpy(p->dir_z, &r.d.z, sizeof r.d.z);
+    memcpy(p->tnear, &r.tmin, sizeof r.tmin);
+    memcpy(p->tfar, &r.tmax, sizeof r.tmax);
+    memset(p->time, 0, sizeof p->time);
+    memset(p->mask, 0xff, sizeof p->mask);
+    memcpy(p->id, &first, sizeof first);
+    memset(p->flags, 0, sizeof p->flags);
+}
+
+bool accel_mixes_packets(const struct accel *a) {
+    return a->few != NULL;
 }
 
 static void few_intersect16(const struct few *f, const struct ray rays[ACCEL_PACKET],

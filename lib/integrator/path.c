@@ -209,9 +209,9 @@ static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const 
     struct packet p;
     for (uint32_t i = 0; i < count; i += (uint32_t)p.count) {
         p = packet_at(w, list, count, i);
-        const bool together = first && run_together(lanes, &p);
-        const bool pays = together || accel_mixes_packets(w->accel) ||
-                          (w->packets_pay && p.count >= LEAST_IN_PACKET);
+        const bool mixes = accel_mixes_packets(w->accel);
+        const bool together = !mixes && first && run_together(lanes, &p);
+        const bool pays = mixes || together || (w->packets_pay && p.count >= LEAST_IN_PACKET);
         if (!w->shadow_rays_may_pass && pays)
             finish_as_packet(ctx, lanes, &p, together);
         else
