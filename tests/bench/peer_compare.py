@@ -7,10 +7,10 @@
 Render time only (no loading, no compilation), medians; each ratio twice, of wall clock and of
 processor seconds (user and system, all threads; ours without loading), since other work on the
 machine stretches the first far more. Equal samples: both with their independent sampler. Equal
-error: time x relMSE, which is the time to a given relMSE where error falls as 1/N; relume with its
-default sampler, Mitsuba llvm with the better of independent and multijitter. The error is the mean
-of (picture - A) (picture - B) over two independent references, so that their own noise drops out;
-both are Mitsuba's, each with 4 times the samples.
+error: time x relMSE, which is the time to a given relMSE where error falls as 1/N; relume with the
+better of sobol and lattice, Mitsuba llvm of independent and multijitter. The error is the mean of
+(picture - A) (picture - B) over two independent references, so that their own noise drops out; both
+are Mitsuba's, each with 4 times the samples.
 """
 import argparse
 import json
@@ -68,6 +68,7 @@ def mitsuba(scene, variant, size, spp, sampler, seed, out, passes=1):
 
 PEERS = (("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"),
          ("llvm_ad_rgb", "multijitter"))
+SAMPLERS = ("sobol", "lattice")
 
 
 def measure(args, scene, size, spp, folder):
@@ -79,7 +80,7 @@ def measure(args, scene, size, spp, folder):
     loading = min(relume(args, scene, "16x16", 1, "sobol", 0, out)[1] for _ in range(REPEATS))
     seconds, errors = {}, {}
     for repeat in range(REPEATS):
-        for sampler in ("independent", "sobol"):
+        for sampler in ("independent", *SAMPLERS):
             spent = relume(args, scene, size, spp, sampler, repeat, out)
             seconds.setdefault(sampler, []).append(spent - [0, loading])
             errors.setdefault(sampler, []).append(relmse(read_rgb(out), references))
@@ -94,15 +95,17 @@ def measure(args, scene, size, spp, folder):
 def compare(args, scene, size, spp):
     with tempfile.TemporaryDirectory() as folder:
         seconds, errors = measure(args, scene, size, spp, folder)
-    cost = np.min([seconds[p] * errors[p] for p in PEERS[1:]], axis=0)
+    cost, theirs = (np.min([seconds[s] * errors[s] for s in keys], axis=0)
+                    for keys in (SAMPLERS, PEERS[1:]))
     width, height = map(int, size.split("x"))
     ratios = (("scalar_rgb", seconds[PEERS[0]] / seconds["independent"]),
               ("llvm", seconds[PEERS[1]] / seconds["independent"]),
-              ("llvm to equal relMSE", cost / (seconds["sobol"] * errors["sobol"])))
+              ("llvm to equal relMSE", theirs / cost))
     print(f"{Path(scene).parent.name} {size} {spp} spp: relume "
           f"{width * height * spp / 1e6 / seconds['independent'][0]:.2f} Mpaths/s; times ours, wall "
           "(processor): " + ", ".join(f"{name} {r[0]:.2f} ({r[1]:.2f})" for name, r in ratios) +
-          f"; relMSE relume {errors['sobol']:.3g}, llvm {min(errors[p] for p in PEERS[1:]):.3g}",
+          f"; relMSE relume {min(errors[s] for s in SAMPLERS):.3g}, "
+          f"llvm {min(errors[p] for p in PEERS[1:]):.3g}",
           flush=True)
 
 
