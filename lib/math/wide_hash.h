@@ -7,6 +7,19 @@
 typedef uint32_t wide_half __attribute__((vector_size(32)));
 typedef uint64_t wide_half64 __attribute__((vector_size(64)));
 
+static inline wide_uint wide_hash_u32(wide_uint x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
+    return x;
+}
+
+static inline wide_uint wide_hash_combine(wide_uint seed, wide_uint v) {
+    return wide_hash_u32(seed ^ (v + 0x9e3779b9u + (seed << 6) + (seed >> 2)));
+}
+
 // Sixteen 64-bit words: lanes 0 to 7, and 8 to 15.
 struct wide_u64 {
     wide_half64 a, b;

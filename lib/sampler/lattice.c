@@ -37,8 +37,26 @@ static float next_1d(struct sampler *s) {
     return next_2d(s).x;
 }
 
+static wide_uint orders(wide_uint seed, wide_uint set) {
+    const wide_uint order = wide_hash_combine(seed, set);
+    return order & (wide_uint)(set != 0);
+}
+
+static void draw_wide(const struct sampler_lanes *s, wide_uint dimension, wide u[2]) {
+    const struct wide_u64 shift = wide_hash_u64(wide_join(s->seed, dimension));
+    const wide_uint phi = s->reversed ^ orders(s->seed, dimension / DRAWS);
+    wide_uint z[2];
+    for (int i = 0; i < WIDE_LANES; i++) {
+        const uint32_t draw = dimension[i] % DRAWS;
+        z[0][i] = vector[2 * draw];
+        z[1][i] = vector[2 * draw + 1];
+    }
+    u[0] = wide_uniform_float(phi * z[0] + wide_low_word(shift));
+    u[1] = wide_uniform_float(phi * z[1] + wide_high_word(shift));
+}
+
 const struct sampler_type sampler_lattice = {
     .entry = {.name = "lattice", .help = "an extensible rank-1 lattice, shifted at random",
               .aliases = aliases, .params = params, .size = sizeof(struct sampler_settings)},
-    .next_1d = next_1d, .next_2d = next_2d,
+    .next_1d = next_1d, .next_2d = next_2d, .draw_wide = draw_wide,
 };
