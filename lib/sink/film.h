@@ -85,7 +85,7 @@ bool film_short_block(const struct film *f, struct sums_node *node);
 // Samples whose value was NaN or infinite; they count as black.
 uint64_t film_rejected(const struct film *f);
 // Noise of the picture so far: sqrt of the mean over pixels of SE^2 / (b^2 + 1e-3 mean(b)^2) with
-// luminances b; needs `variance` and two samples, else negative.
+// b = (R + G + B) / 3; needs `variance` and two samples, else negative.
 double film_noise(const struct film *f);
 
 // The picture and its layers so far.

@@ -15,22 +15,31 @@ static const char *const path_names[PATH_SLOTS] = {
     "direct_diffuse",   "direct_glossy",     "direct_specular", "indirect_diffuse",
     "indirect_glossy", "indirect_specular", "emission"};
 
-// Squared standard error of the mean from the means of the replicates that have samples.
-static void squared_error(const struct film_counts *n, const double *replicates, double error[3]) {
+// Squared standard error of a weighted sum of the channels, from the means of the replicates that have
+// samples. Channels go together, so it is not made of theirs.
+static double squared_error_of(const struct film_counts *n, const double *replicates,
+                               const double weights[3]) {
+    double sums[FILM_REPLICATES], mean = 0, spread = 0;
     uint32_t used = 0;
-    for (uint32_t r = 0; r < FILM_REPLICATES; r++)
-        used += n->replicate[r] > 0;
-    for (uint32_t c = 0; c < 3; c++) {
-        double mean = 0, spread = 0;
-        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
-            mean += replicates[3 * r + c] / (double)n->all;
-        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
-            if (n->replicate[r]) {
-                const double d = replicates[3 * r + c] / (double)n->replicate[r] - mean;
-                spread += d * d;
-            }
-        error[c] = used > 1 ? spread / ((double)used * (used - 1)) : 0;
+    for (uint32_t r = 0; r < FILM_REPLICATES; r++) {
+        sums[r] = 0;
+        for (uint32_t c = 0; c < 3; c++)
+            sums[r] += weights[c] * replicates[3 * r + c];
+        mean += sums[r] / (double)n->all;
     }
+    for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+        if (n->replicate[r]) {
+            const double d = sums[r] / (double)n->replicate[r] - mean;
+            spread += d * d;
+            used++;
+        }
+    return used > 1 ? spread / ((double)used * (used - 1)) : 0;
+}
+
+static void squared_error(const struct film_counts *n, const double *replicates, double error[3]) {
+    static const double only[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int c = 0; c < 3; c++)
+        error[c] = squared_error_of(n, replicates, only[c]);
 }
 
 // The picture's colour: the beauty slot, or the sum of the light groups.
@@ -57,14 +66,14 @@ double film_noise(const struct film *f) {
     size_t i = 0;
     for (int y = o->y0; y < o->y1; y++)
         for (int x = o->x0; x < o->x1; x++, i++) {
-            double rgb[3], error[3];
+            static const double third[3] = {1.0 / 3, 1.0 / 3, 1.0 / 3};
+            double rgb[3];
             struct film_counts n;
             film_pixel(f, x, y, sums);
             film_pixel_counts(f, x, y, &n);
             pixel_colour(l, o, sums, 1.0 / (double)n.all, rgb);
-            squared_error(&n, sums + l->replicate_channel, error);
             b[i] = (rgb[0] + rgb[1] + rgb[2]) / 3;
-            e[i] = (error[0] + error[1] + error[2]) / 3;
+            e[i] = squared_error_of(&n, sums + l->replicate_channel, third);
             mean += b[i] / (double)pixels;
         }
     for (i = 0; i < pixels; i++) {
