@@ -19,7 +19,7 @@ struct values {
     const char *scene, *output, *integrator, *sampler, *aovs;
     int spp, size[2], crop[4], max_depth, seed, threads;
     double seconds, noise, checkpoint, preview;
-    const char *samples;
+    const char *samples, *cryptomatte;
     bool variance, light_groups, paths, half, lenient, quiet, json, resume, adaptive;
     struct option_list defines;
 };
@@ -76,6 +76,9 @@ static const struct option_spec options[] = {
      .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
     {.name = "aov", .type = OPTION_TEXT, .offset = AT(aovs), .argument = "LIST",
      .help = "layers of what is seen first: albedo,N,Ng,Z,P,uv,shape,instance"},
+    {.name = "cryptomatte", .type = OPTION_TEXT, .offset = AT(cryptomatte), .argument = "LIST",
+     .help = "masks by name: object,material (Cryptomatte 1.2), from the picture's first\n"
+             "256 samples"},
     {.name = "variance", .type = OPTION_FLAG, .offset = AT(variance),
      .help = "write the squared standard error of each pixel as layer `variance`"},
     {.name = "light-groups", .type = OPTION_FLAG, .offset = AT(light_groups),
@@ -154,7 +157,7 @@ static int run_job(const struct values *v, const char *command, const struct sce
     const struct job_options job_options = {
         .scene = v->scene, .spp = v->spp, .receiver = v->receiver,
                 .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
-        .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
+        .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs, .cryptomatte = v->cryptomatte,
         .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
         .adaptive = v->adaptive,
         .samples = {samples[0], samples[1]}, .seconds = v->seconds, .noise = v->noise,

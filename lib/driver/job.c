@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/thread.h"
+#include "driver/cryptomatte.h"
 #include "driver/pilot.h"
 #include "driver/ranks.h"
 #include "phase/phase.h"
@@ -146,6 +147,7 @@ static bool prepare(struct job *job, const struct job_options *o) {
     job->film = (struct film_options){.alpha = s->film.alpha, .paths = o->paths,
                                       .variance = o->variance || o->noise > 0};
     if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
+        (o->cryptomatte && !cryptomatte_parse(o->cryptomatte, &job->cryptomatte)) ||
         !choose_crop(o, &s->film, &job->film) ||
         !prepare_integrator(o, s, job->world, &job->method, &job->film) ||
         !prepare_sensor(job) || (o->light_groups && !light_groups_init(&job->groups, s)))
@@ -227,5 +229,5 @@ bool job_image(const struct job *job, const struct film *film, const struct rend
         return false;
     image_set_number(im, "relume.seed", job->render.tracer.seed);
     image_set_number(im, "relume.seconds", result->seconds);
-    return true;
+    return cryptomatte_add(job, job->cryptomatte, film_samples(film), im);
 }

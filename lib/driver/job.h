@@ -22,6 +22,7 @@ struct job_options {
     int threads;
     const char *aovs;             // "albedo,N" or NULL
     bool variance, light_groups, paths;
+    const char *cryptomatte;      // "object,material" or NULL
     bool adaptive;                // samples go where a pilot finds noise
     // Changes the scene between reading it and building the world; or NULL.
     void (*edit_scene)(struct scene *s, void *user);
@@ -40,6 +41,7 @@ struct job {
     struct film_options film;
     struct render_options render;
     struct method method;  // of rendering
+    uint32_t cryptomatte;  // layers (driver/cryptomatte.h)
     struct sample_map map; // of adaptive sampling; its memory is the scene's
     uint64_t defines_hash; // of the -D values
     double load_seconds; // reading and building

@@ -25,19 +25,25 @@ struct writer {
     atomic_bool failed;
 };
 
+// Numbers that name objects (Cryptomatte) do not survive rounding.
+static bool is_identity(const char *channel) {
+    return strncmp(channel, "Crypto", 6) == 0;
+}
+
 // Finite values that round to infinity as a half: beyond 65504 + 16, half the last step.
 static uint64_t count_half_overflows(const struct image *im) {
-    const size_t n = (size_t)im->width * (size_t)im->height * (size_t)im->channels;
+    const size_t pixels = (size_t)im->width * (size_t)im->height, n = (size_t)im->channels;
     uint64_t count = 0;
-    for (size_t i = 0; i < n; i++)
-        count += isfinite(im->pixels[i]) && fabsf(im->pixels[i]) >= 65520.0f;
+    for (size_t c = 0; c < n; c++)
+        for (size_t i = 0; i < pixels && !is_identity(im->channel_names[c]); i++)
+            count += isfinite(im->pixels[i * n + c]) && fabsf(im->pixels[i * n + c]) >= 65520.0f;
     return count;
 }
 
 static bool add_channels(exr_context_t context, int part, const struct image *im, bool half) {
     for (int c = 0; c < im->channels; c++)
         if (exr_add_channel(context, part, im->channel_names[c],
-                            half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC,
+                            half && !is_identity(im->channel_names[c]) ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC,
                             1, 1) != EXR_ERR_SUCCESS)
             return false;
     return true;

@@ -68,6 +68,21 @@ static struct image_attribute *attribute_for(struct image *im, const char *name)
     return a;
 }
 
+void image_add_channels(struct image *im, int count) {
+    const size_t pixels = (size_t)im->width * (size_t)im->height;
+    const size_t old = (size_t)im->channels, new = old + (size_t)count;
+    float *values = mem_array(pixels * new, sizeof *values);
+    void *names = mem_array(new, sizeof *im->channel_names);
+    for (size_t i = 0; i < pixels; i++)
+        memcpy(values + i * new, im->pixels + i * old, old * sizeof *values);
+    memcpy(names, im->channel_names, old * sizeof *im->channel_names);
+    mem_free(im->pixels);
+    mem_free(im->channel_names);
+    im->pixels = values;
+    im->channel_names = names;
+    im->channels = (int)new;
+}
+
 void image_set_text(struct image *im, const char *name, const char *text) {
     const size_t n = strlen(text) + 1;
     char *copy = mem_array(n, 1);

@@ -39,6 +39,8 @@ void image_finish(struct image *im);
 void image_set_text(struct image *im, const char *name, const char *text);
 void image_set_number(struct image *im, const char *name, double number);
 const struct image_attribute *image_find_attribute(const struct image *im, const char *name);
+// Appends black channels without names.
+void image_add_channels(struct image *im, int count);
 int image_find_channel(const struct image *im, const char *name); // -1: none
 
 // Reads any format: EXR through OpenEXRCore, everything else through OpenImageIO, both in a child

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Layers of what is seen first, with or without the picture of a nested integrator.
-#include "integrator/vertex.h"
+#include "integrator/path.h"
 
 #include <string.h>
 
@@ -55,6 +55,36 @@ static bool prepare(struct object *self, struct integrator_wants *wants) {
     return !nested || !nested->prepare || nested->prepare((struct object *)a->nested, wants);
 }
 
+// Goes straight through what lets the ray pass, by the decisions that path makes. false: nothing is
+// there.
+static bool find_solid(struct trace_context *ctx, int lane, const struct path_start *start,
+                       struct ray *ray, struct accel_hit *hit, struct surface *s) {
+    struct sampler sampler = start->sampler;
+    float passed = 0;
+    for (uint32_t events = 0; hit->shape != SCENE_NONE; events++) {
+        struct bsdf_sample b;
+        world_surface(ctx->world, ray, hit, s);
+        s->t += passed;
+        if (!ctx->world->shadow_rays_may_pass || events >= INTEGRATOR_MOST_EVENTS)
+            return true;
+        const vec3 wo = to_local(&s->point.frame, -ray->d);
+        const struct closure *closure = response_resolve(ctx, lane, 0, s, wo);
+        const uint32_t first = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * events;
+        sampler.dimension = first + DRAW_LOBE;
+        const float lobe = sampler_1d(&sampler);
+        sampler.dimension = first + DRAW_DIRECTION;
+        if (!closure || !(closure->lobes & LOBE_NULL) ||
+            !closure_sample(closure, lobe, sampler_2d(&sampler), &b) || !(b.lobe & LOBE_NULL))
+            return true;
+        passed = s->t;
+        *ray = (struct ray){surface_offset(s, ray->d), ray->d, 0, INFINITY};
+        ctx->rays++;
+        if (!accel_intersect(ctx->world->accel, ray, hit))
+            return false;
+    }
+    return false;
+}
+
 static void trace_first_hits(struct trace_context *ctx, const struct path_start starts[SINK_LANES]) {
     struct ray rays[SINK_LANES];
     struct accel_hit hits[SINK_LANES];
@@ -65,9 +95,8 @@ static void trace_first_hits(struct trace_context *ctx, const struct path_start 
     ctx->paths += SINK_LANES;
     for (int i = 0; i < SINK_LANES; i++) {
         struct surface s;
-        if (hits[i].shape == SCENE_NONE)
+        if (!find_solid(ctx, i, &starts[i], &rays[i], &hits[i], &s))
             continue;
-        world_surface(ctx->world, &rays[i], &hits[i], &s);
         ctx->sink->type->covered(ctx->sink, i);
         if (!ctx->sink->wants_surface)
             continue;
@@ -84,6 +113,10 @@ static void trace(const void *data, struct trace_context *ctx,
     else
         trace_first_hits(ctx, starts);
 }
+
+static struct aov nothing_else = {"", NULL};
+
+const struct object integrator_first_hits = {.type = &integrator_aov.entry, .data = &nothing_else};
 
 const struct integrator_type integrator_aov = {
     .entry = {.name = "aov", .help = "layers of the first hit: albedo, normals, depth, ...",

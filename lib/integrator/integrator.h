@@ -76,6 +76,9 @@ struct integrator_type {
 
 extern const struct registry integrators;
 
+// Finds what is seen first, and nothing else.
+extern const struct object integrator_first_hits;
+
 // Whether an integrator, with what is nested in it, can begin paths at path_start.surface.
 bool integrator_meters(const struct object *integrator);
 
