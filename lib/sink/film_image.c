@@ -15,31 +15,22 @@ static const char *const path_names[PATH_SLOTS] = {
     "direct_diffuse",   "direct_glossy",     "direct_specular", "indirect_diffuse",
     "indirect_glossy", "indirect_specular", "emission"};
 
-// Squared standard error of a weighted sum of the channels, from the means of the replicates that have
-// samples. Channels go together, so it is not made of theirs.
-static double squared_error_of(const struct film_counts *n, const double *replicates,
-                               const double weights[3]) {
-    double sums[FILM_REPLICATES], mean = 0, spread = 0;
-    uint32_t used = 0;
-    for (uint32_t r = 0; r < FILM_REPLICATES; r++) {
-        sums[r] = 0;
-        for (uint32_t c = 0; c < 3; c++)
-            sums[r] += weights[c] * replicates[3 * r + c];
-        mean += sums[r] / (double)n->all;
-    }
-    for (uint32_t r = 0; r < FILM_REPLICATES; r++)
-        if (n->replicate[r]) {
-            const double d = sums[r] / (double)n->replicate[r] - mean;
-            spread += d * d;
-            used++;
-        }
-    return used > 1 ? spread / ((double)used * (used - 1)) : 0;
-}
-
+// Squared standard error of the mean from the means of the replicates that have samples.
 static void squared_error(const struct film_counts *n, const double *replicates, double error[3]) {
-    static const double only[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int c = 0; c < 3; c++)
-        error[c] = squared_error_of(n, replicates, only[c]);
+    uint32_t used = 0;
+    for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+        used += n->replicate[r] > 0;
+    for (uint32_t c = 0; c < 3; c++) {
+        double mean = 0, spread = 0;
+        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+            mean += replicates[3 * r + c] / (double)n->all;
+        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+            if (n->replicate[r]) {
+                const double d = replicates[3 * r + c] / (double)n->replicate[r] - mean;
+                spread += d * d;
+            }
+        error[c] = used > 1 ? spread / ((double)used * (used - 1)) : 0;
+    }
 }
 
 // The picture's colour: the beauty slot, or the sum of the light groups.
@@ -54,36 +45,53 @@ static void pixel_colour(const struct film_layout *l, const struct film_options 
     }
 }
 
-double film_noise(const struct film *f) {
+// Squared error of the grey value relative to b^2 + floor. The deviation of a replicate is divided by
+// what the others say of b: were it part of b itself, a rare bright sample would raise both, and hide.
+static double relative_error(const struct film_counts *n, const double *replicates, double floor) {
+    double sums[FILM_REPLICATES], all = 0, error = 0;
+    uint32_t used = 0;
+    for (uint32_t r = 0; r < FILM_REPLICATES; r++) {
+        sums[r] = (replicates[3 * r] + replicates[3 * r + 1] + replicates[3 * r + 2]) / 3;
+        all += sums[r];
+        used += n->replicate[r] > 0;
+    }
+    for (uint32_t r = 0; r < FILM_REPLICATES && used > 1; r++) {
+        if (!n->replicate[r])
+            continue;
+        const double d = sums[r] / (double)n->replicate[r] - all / (double)n->all;
+        const double b = (all - sums[r]) / (double)(n->all - n->replicate[r]);
+        const double scale = b * b + floor;
+        error += scale > 0 ? d * d / scale / ((double)used * (used - 1)) : 0;
+    }
+    return error;
+}
+
+// Mean of the grey values; or, where that is known, of the relative errors.
+static double mean_over_pixels(const struct film *f, const double *known_mean) {
     const struct film_layout *l = film_get_layout(f);
     const struct film_options *o = film_get_options(f);
-    if (l->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
-        return -1;
-    double *sums = mem_array(l->channels, sizeof *sums);
-    const size_t pixels = (size_t)(o->x1 - o->x0) * (size_t)(o->y1 - o->y0);
-    double *b = mem_array(pixels, sizeof *b), *e = mem_array(pixels, sizeof *e);
-    double mean = 0, noise = 0;
-    size_t i = 0;
+    const double pixels = (double)(o->x1 - o->x0) * (double)(o->y1 - o->y0);
+    double *sums = mem_array(l->channels, sizeof *sums), mean = 0;
     for (int y = o->y0; y < o->y1; y++)
-        for (int x = o->x0; x < o->x1; x++, i++) {
-            static const double third[3] = {1.0 / 3, 1.0 / 3, 1.0 / 3};
+        for (int x = o->x0; x < o->x1; x++) {
             double rgb[3];
             struct film_counts n;
             film_pixel(f, x, y, sums);
             film_pixel_counts(f, x, y, &n);
             pixel_colour(l, o, sums, 1.0 / (double)n.all, rgb);
-            b[i] = (rgb[0] + rgb[1] + rgb[2]) / 3;
-            e[i] = squared_error_of(&n, sums + l->replicate_channel, third);
-            mean += b[i] / (double)pixels;
+            mean += known_mean ? relative_error(&n, sums + l->replicate_channel,
+                                                1e-3 * *known_mean * *known_mean) / pixels
+                               : (rgb[0] + rgb[1] + rgb[2]) / 3 / pixels;
         }
-    for (i = 0; i < pixels; i++) {
-        const double scale = b[i] * b[i] + 1e-3 * mean * mean;
-        noise += scale > 0 ? e[i] / scale / (double)pixels : 0;
-    }
     mem_free(sums);
-    mem_free(b);
-    mem_free(e);
-    return sqrt(noise);
+    return mean;
+}
+
+double film_noise(const struct film *f) {
+    if (film_get_layout(f)->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
+        return -1;
+    const double mean = mean_over_pixels(f, NULL);
+    return sqrt(mean_over_pixels(f, &mean));
 }
 
 // ---- channels -----------------------------------------------------------------------------------
