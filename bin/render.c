@@ -19,6 +19,7 @@ struct values {
     const char *scene, *output, *integrator, *sampler, *aovs;
     int spp, size[2], crop[4], max_depth, seed, threads;
     double seconds, noise, checkpoint, preview;
+    int space;
     const char *samples, *cryptomatte;
     bool variance, light_groups, paths, half, lenient, quiet, json, resume, adaptive;
     struct option_list defines;
@@ -85,6 +86,9 @@ static const struct option_spec options[] = {
      .help = "write a layer per emitter, or per `group` name"},
     {.name = "paths", .type = OPTION_FLAG, .offset = AT(paths),
      .help = "write direct/indirect x diffuse/glossy/specular layers"},
+    {.name = "colour-space", .type = OPTION_CHOICE, .offset = AT(space), .argument = "NAME",
+     .help = "primaries of the picture: rec709, rec2020, acescg", .def = "rec709",
+     .choices = image_space_names},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
     {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
      .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
@@ -121,6 +125,7 @@ static int trace_and_write(const struct values *v, const char *command, struct j
     const struct checkpoint_options keeping = {
         .output = v->output, .command = command, .version = RELUME_VERSION, .seconds = v->checkpoint,
         .preview_seconds = v->preview, .resume = v->resume, .exr = &exr,
+        .space = (enum image_space)v->space,
         .keep = v->checkpoint > 0 || v->resume || v->samples};
     if (ranks_index() > 0) { // rank 0 keeps and reports
         job_trace(job, film, &o.render);
@@ -208,6 +213,11 @@ static int run(const void *values, const char *command) {
     if (!parse_samples(v->samples, samples) || !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
         (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
         return EXIT_USAGE;
+    if (v->space != SPACE_REC709 && (v->variance || v->noise > 0)) {
+        log_error("--colour-space %s: errors of channels (--variance, --noise) are those of rec709",
+                  image_space_names[v->space]);
+        return EXIT_USAGE;
+    }
     if (v->quiet)
         log_set_level(LOG_WARN);
     struct arena arena = {0};

@@ -100,6 +100,7 @@ bool checkpoint_picture(const struct checkpoint *c, const struct film *film,
     bool written = job_image(c->job, film, result, &im);
     if (written) {
         film_head_label(c->head, film, &im);
+        image_from_rec709(&im, c->options.space);
         written = image_write_exr(c->options.output, &im, c->options.exr);
     }
     image_finish(&im);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "driver/film_head.h"
+#include "image/primaries.h"
 #include "sink/journal.h"
 
 struct checkpoint_options {
@@ -13,6 +14,7 @@ struct checkpoint_options {
     double preview_seconds;   // between updates of the picture; 0: only at the end
     bool resume;              // go on from the journal, if it is there
     const struct image_exr_options *exr;
+    enum image_space space;
 };
 
 struct checkpoint {

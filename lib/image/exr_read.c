@@ -208,6 +208,15 @@ static bool read_tiles(struct reader *r, const struct exr_errors *errors) {
 }
 
 // Strings and numbers; other types are of no use here.
+static void read_chromaticities(struct reader *r, const exr_attribute_t *a) {
+    const exr_attr_chromaticities_t *c = a->chromaticities;
+    char text[256];
+    snprintf(text, sizeof text, "%g %g %g %g %g %g %g %g", (double)c->red_x, (double)c->red_y,
+             (double)c->green_x, (double)c->green_y, (double)c->blue_x, (double)c->blue_y,
+             (double)c->white_x, (double)c->white_y);
+    image_set_text(r->im, a->name, text);
+}
+
 static void read_attributes(struct reader *r) {
     int32_t n = 0;
     exr_get_attribute_count(r->context, 0, &n);
@@ -219,6 +228,8 @@ static void read_attributes(struct reader *r) {
             continue;
         if (a->type == EXR_ATTR_STRING && a->string->length < 1 << 20)
             image_set_text(r->im, a->name, a->string->str ? a->string->str : "");
+        else if (a->type == EXR_ATTR_CHROMATICITIES)
+            read_chromaticities(r, a);
         else if (a->type == EXR_ATTR_DOUBLE || a->type == EXR_ATTR_FLOAT || a->type == EXR_ATTR_INT)
             image_set_number(r->im, a->name, a->type == EXR_ATTR_DOUBLE  ? a->d
                                              : a->type == EXR_ATTR_FLOAT ? (double)a->f

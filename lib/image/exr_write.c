@@ -49,11 +49,24 @@ static bool add_channels(exr_context_t context, int part, const struct image *im
     return true;
 }
 
+// The text that primaries.h describes.
+static bool add_chromaticities(exr_context_t context, int part, const struct image_attribute *a) {
+    exr_attr_chromaticities_t c;
+    return sscanf(a->text, "%f %f %f %f %f %f %f %f", &c.red_x, &c.red_y, &c.green_x, &c.green_y,
+                  &c.blue_x, &c.blue_y, &c.white_x, &c.white_y) == 8 &&
+           exr_attr_set_chromaticities(context, part, a->name, &c) == EXR_ERR_SUCCESS;
+}
+
 static bool add_attributes(exr_context_t context, int part, const struct image *im) {
     for (int i = 0; i < im->attribute_count; i++) {
         const struct image_attribute *a = &im->attributes[i];
         if (strncmp(a->name, "file.", 5) == 0)
             continue;
+        if (strcmp(a->name, "chromaticities") == 0 && a->text) {
+            if (!add_chromaticities(context, part, a))
+                return false;
+            continue;
+        }
         const exr_result_t added = a->text
                                        ? exr_attr_set_string(context, part, a->name, a->text)
                                        : exr_attr_set_double(context, part, a->name, a->number);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "image/image.h"
+#include "image/primaries.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -167,7 +167,10 @@ bool image_to_rgb(const struct image *im, struct image *rgb) {
     if (!find_rgb(im, "", channel))
         for (int i = 0; i < 3; i++)
             channel[i] = im->channels >= 3 ? i : 0;
-    return gather_rgb(im, channel, rgb);
+    const bool gathered = gather_rgb(im, channel, rgb);
+    if (gathered)
+        image_rgb_to_rec709(rgb, im);
+    return gathered;
 }
 
 bool image_layer_to_rgb(const struct image *im, const char *layer, const char *path,
@@ -176,8 +179,13 @@ bool image_layer_to_rgb(const struct image *im, const char *layer, const char *p
     *rgb = (struct image){0};
     if (!layer[0])
         return image_to_rgb(im, rgb);
-    if (find_rgb(im, layer, channel))
-        return gather_rgb(im, channel, rgb);
+    if (find_rgb(im, layer, channel)) {
+        const bool gathered = gather_rgb(im, channel, rgb);
+        const char *red = im->channel_names[channel[0]];
+        if (gathered && red[strlen(red) - 1] == 'R') // and not X Y Z
+            image_rgb_to_rec709(rgb, im);
+        return gathered;
+    }
     log_error("%s: has no layer '%s' (channels R G B, X Y Z or Y of it, or a channel of that name)",
               path, layer);
     return false;
