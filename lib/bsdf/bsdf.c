@@ -14,7 +14,7 @@ static const struct entry *const entries[] = {
 const struct registry bsdfs = {"bsdf", entries};
 
 // A closure takes at most this much of the stack.
-enum { CLOSURE_BYTES = 256, MOST_NESTED = sizeof((struct closure_stack *)0)->bytes / CLOSURE_BYTES };
+enum { CLOSURE_BYTES = 384, MOST_NESTED = sizeof((struct closure_stack *)0)->bytes / CLOSURE_BYTES };
 
 // Number of materials in the tree under o, o included; stops counting above the limit.
 static int count_nested(const struct object *o, int count) {

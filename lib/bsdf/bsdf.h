@@ -49,7 +49,7 @@ struct closure {
 // Memory for the closures of one hit; reset `used` to 0 before each resolve.
 struct closure_stack {
     size_t used;
-    _Alignas(16) unsigned char bytes[4096 - 16];
+    _Alignas(16) unsigned char bytes[6144 - 16];
 };
 
 struct bsdf_sample {
