@@ -94,6 +94,7 @@ static void init_overlaps(struct light_loop *l, uint32_t object) {
     const struct light_loop_options *o = &l->scene->options;
     const struct form *f = o->objects[object].form;
     l->overlaps[object] = arena_alloc(&l->arena, f->terms * sizeof **l->overlaps);
+    l->quotients[object] = arena_alloc(&l->arena, f->terms * sizeof **l->quotients);
     for (uint32_t t = 0; t < f->terms; t++) {
         const struct gamma *gamma[OVERLAP_AXES] = {NULL};
         const struct basis *basis[OVERLAP_AXES] = {NULL};
@@ -105,6 +106,7 @@ static void init_overlaps(struct light_loop *l, uint32_t object) {
             gamma[axes] = &slot->gamma;
             basis[axes++] = &f->curve[slot->curve].f[0].table->basis;
         }
+        wide_quotient_init(&l->quotients[object][t], &f->term[t].quotient, &l->arena);
         overlap_init(&l->overlaps[object][t], gamma, basis, axes, &l->arena);
         l->overlaps[object][t].tolerance = o->tolerance > 0 ? o->tolerance : DEFAULT_TOLERANCE;
     }
@@ -115,6 +117,7 @@ struct light_loop *light_loop_create(const struct light_loop_scene *s) {
     l->scene = s;
     l->most = s->options.lights->count / s->options.positions + 1;
     l->overlaps = arena_alloc(&l->arena, (s->options.object_count + 1) * sizeof *l->overlaps);
+    l->quotients = arena_alloc(&l->arena, (s->options.object_count + 1) * sizeof *l->quotients);
     for (uint32_t i = 0; i < s->options.object_count; i++)
         init_overlaps(l, i);
     return l;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrator/light_loop.h"
+#include "integrator/wide_quotient.h"
 
 struct light_loop_scene {
     struct light_loop_options options;
@@ -39,7 +40,8 @@ struct light_loop {
     size_t visit_count, visit_capacity;
     struct arrival *arrivals; // `most` for each visit
     size_t arrival_capacity, most;
-    struct overlap **overlaps; // by object: of its terms
+    struct overlap **overlaps;         // by object: of its terms
+    struct wide_quotient **quotients;
     struct closure_stack stack;
     struct arena arena;
 };

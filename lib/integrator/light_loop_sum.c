@@ -12,6 +12,7 @@ struct shading {
     const struct visit *visit;
     const struct form *form;
     struct overlap *terms;
+    const struct wide_quotient *quotients; // of the terms
     const struct closure *outer, *inner;
     vec3 rows[3];
     struct direction wo;
@@ -51,60 +52,129 @@ static void add_point(const struct shading *s, struct angles *a, const double li
 
 // ---- triangles ----------------------------------------------------------------------------------
 
-// A node of sixteen triangles, in the frame of the closure.
-static struct wide3 local_nodes(const struct shading *s, const struct arrival *list, uint32_t count,
-                                int node) {
-    const struct overlap_triangle *triangles = s->loop->scene->triangles;
-    float d[3][WIDE_LANES];
-    for (uint32_t i = 0; i < WIDE_LANES; i++)
-        for (int k = 0; k < 3; k++)
-            d[k][i] = (float)triangles[list[i < count ? i : 0].light].node[node][k];
+// Sixteen triangles, with what all terms need of them.
+struct bundle {
+    const struct arrival *list;
+    uint32_t count;
+    wide gamma[FORM_TERMS][OVERLAP_AXES][OVERLAP_NODES];
+    wide quotient[FORM_TERMS][CURVE_CHANNELS]; // times cosine, at the centres
+};
+
+static struct wide3 to_closure(const struct shading *s, float d[3][WIDE_LANES]) {
     const struct wide3 w = {wide_load(d[0]), wide_load(d[1]), wide_load(d[2])};
     return (struct wide3){wide_dot(wide3_of(s->rows[0]), w), wide_dot(wide3_of(s->rows[1]), w),
                           wide_dot(wide3_of(s->rows[2]), w)};
 }
 
-static void gammas_of_term(const struct shading *s, uint32_t term, const struct wide3 nodes[],
-                           wide gamma[OVERLAP_AXES][OVERLAP_NODES]) {
-    const struct overlap *o = &s->terms[term];
-    for (uint32_t x = 0; x < o->axes; x++)
-        for (int i = 0; i < OVERLAP_NODES; i++)
-            gamma[x][i] = wide_gamma(&o->axis[x].gamma, s->wo, &nodes[i]);
+// A node of the triangles, in the frame of the closure.
+static struct wide3 local_nodes(const struct shading *s, const struct bundle *b, int node) {
+    const struct overlap_triangle *triangles = s->loop->scene->triangles;
+    float d[3][WIDE_LANES];
+    for (uint32_t i = 0; i < WIDE_LANES; i++)
+        for (int k = 0; k < 3; k++)
+            d[k][i] = (float)triangles[b->list[i < b->count ? i : 0].light].node[node][k];
+    return to_closure(s, d);
+}
+
+static struct wide3 local_centres(const struct shading *s, const struct bundle *b) {
+    float d[3][WIDE_LANES];
+    for (uint32_t i = 0; i < WIDE_LANES; i++)
+        for (int k = 0; k < 3; k++)
+            d[k][i] = s->loop->scene->centres[b->list[i < b->count ? i : 0].light][k];
+    return to_closure(s, d);
+}
+
+static void find_gammas(const struct shading *s, struct bundle *b) {
+    struct wide3 nodes[OVERLAP_NODES];
+    for (int i = 0; i < OVERLAP_NODES; i++)
+        nodes[i] = local_nodes(s, b, i);
+    for (uint32_t t = 0; t < s->form->terms; t++)
+        for (uint32_t x = 0; x < s->terms[t].axes; x++)
+            for (int i = 0; i < OVERLAP_NODES; i++)
+                b->gamma[t][x][i] = wide_gamma(&s->terms[t].axis[x].gamma, s->wo, &nodes[i]);
+}
+
+static void find_quotients(const struct shading *s, struct bundle *b) {
+    const struct wide3 centres = local_centres(s, b);
+    for (uint32_t t = 0; t < s->form->terms; t++)
+        if (s->quotients[t].fits)
+            wide_quotient_cos(&s->quotients[t], s->wo, &centres, b->quotient[t]);
+}
+
+// What the terms without a wide quotient give for one of the triangles.
+static void find_quotient(const struct shading *s, struct bundle *b, uint32_t term, uint32_t i,
+                          vec3 wi) {
+    double out[CURVE_CHANNELS] = {0};
+    struct angles a;
+    float factor;
+    if (angles_to(s, wi, &factor, &a))
+        quotient_cos(&s->form->term[term].quotient, &a, out);
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        b->quotient[term][k][i] = (float)out[k];
+}
+
+// What wrappers leave of light to a visit; plain ones leave all.
+static float factor_of(const struct shading *s, vec3 wi) {
+    float factor = 1;
+    if (s->outer != s->inner)
+        editable_inside(s->outer, &wi, &factor);
+    return factor;
+}
+
+static void add_triangle(const struct shading *s, struct bundle *b, uint32_t i) {
+    const struct light_loop_scene *scene = s->loop->scene;
+    const struct arrival *arrival = &b->list[i];
+    const struct light_triangle *l = &scene->options.lights->items[arrival->light];
+    const vec3 wi = to_local(&s->visit->surface.point.frame, scene->centres[arrival->light]);
+    const double factor = (double)factor_of(s, wi);
+    double light[CURVE_CHANNELS], g[OVERLAP_AXES][OVERLAP_NODES];
+    if (!(factor > 0))
+        return;
+    for (uint32_t t = 0; t < s->form->terms; t++) {
+        struct overlap *o = &s->terms[t];
+        if (!s->quotients[t].fits)
+            find_quotient(s, b, t, i, wi);
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            light[k] = l->power[k] * factor * (double)(arrival->through[k] * b->quotient[t][k][i]) *
+                       s->texture[t][k];
+        for (uint32_t x = 0; x < o->axes; x++)
+            for (int k = 0; k < OVERLAP_NODES; k++)
+                g[x][k] = (double)b->gamma[t][x][k][i];
+        wide_overlap_add(o, &scene->triangles[arrival->light], g, light);
+    }
+}
+
+// The same triangle as a point at its centre.
+static void add_centre(const struct shading *s, const struct arrival *arrival) {
+    const struct light_loop_scene *scene = s->loop->scene;
+    const struct light_triangle *l = &scene->options.lights->items[arrival->light];
+    double light[CURVE_CHANNELS];
+    struct angles a;
+    float factor;
+    if (!angles_to(s, to_local(&s->visit->surface.point.frame, scene->centres[arrival->light]),
+                   &factor, &a))
+        return;
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        light[k] = l->power[k] * (double)(factor * arrival->through[k]);
+    add_point(s, &a, light);
 }
 
 static void add_triangles(const struct shading *s, const struct arrival *list, uint32_t count) {
-    const struct light_loop_scene *scene = s->loop->scene;
-    struct wide3 nodes[OVERLAP_NODES];
-    wide gamma[FORM_TERMS][OVERLAP_AXES][OVERLAP_NODES];
-    for (int i = 0; i < OVERLAP_NODES; i++)
-        nodes[i] = local_nodes(s, list, count, i);
-    for (uint32_t t = 0; t < s->form->terms; t++)
-        gammas_of_term(s, t, nodes, gamma[t]);
-    for (uint32_t i = 0; i < count; i++) {
-        const struct light_triangle *l = &scene->options.lights->items[list[i].light];
-        double light[CURVE_CHANNELS], share[CURVE_CHANNELS];
-        struct angles a;
-        float factor;
-        if (!angles_to(s, to_local(&s->visit->surface.point.frame, scene->centres[list[i].light]),
-                       &factor, &a))
-            continue;
-        for (int k = 0; k < CURVE_CHANNELS; k++)
-            light[k] = l->power[k] * (double)(factor * list[i].through[k]);
-        if (scene->options.as_points) {
-            add_point(s, &a, light);
-            continue;
-        }
-        for (uint32_t t = 0; t < s->form->terms; t++) {
-            struct overlap *o = &s->terms[t];
-            double g[OVERLAP_AXES][OVERLAP_NODES];
-            light_of_term(s, t, &a, light, share);
-            for (uint32_t x = 0; x < o->axes; x++)
-                for (int k = 0; k < OVERLAP_NODES; k++)
-                    g[x][k] = (double)gamma[t][x][k][i];
-            wide_overlap_add(o, &scene->triangles[list[i].light], g, share);
-        }
+    struct bundle b;
+    if (s->loop->scene->options.as_points) {
+        for (uint32_t i = 0; i < count; i++)
+            add_centre(s, &list[i]);
+        return;
     }
+    b.list = list;
+    b.count = count;
+    find_gammas(s, &b);
+    find_quotients(s, &b);
+    for (uint32_t i = 0; i < count; i++)
+        add_triangle(s, &b, i);
 }
+
+// ---- other lights -------------------------------------------------------------------------------
 
 // Terms follow one another in the sums.
 static void aim_sums(const struct shading *s, double *sums) {
@@ -115,8 +185,6 @@ static void aim_sums(const struct shading *s, double *sums) {
                 (o->axes > 1 ? o->axis[1].basis.count : 1);
     }
 }
-
-// ---- other lights -------------------------------------------------------------------------------
 
 // One sample; `sign` is how it counts in the difference of the halves.
 static void add_sample(const struct shading *s, struct sampler *sampler, double share, double sign,
@@ -202,7 +270,7 @@ void light_loop_sum(struct light_loop *l, uint32_t pixel, uint32_t object, doubl
     const struct light_loop_scene *scene = l->scene;
     const size_t n = (size_t)scene->coefficients[object] * CURVE_CHANNELS;
     struct shading s = {.loop = l, .form = scene->options.objects[object].form,
-                        .terms = l->overlaps[object]};
+                        .terms = l->overlaps[object], .quotients = l->quotients[object]};
     memset(sums, 0, n * sizeof *sums);
     if (halves)
         memset(halves, 0, n * sizeof *halves);

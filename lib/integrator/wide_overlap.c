@@ -42,39 +42,60 @@ static struct slopes slopes_of(wide a, wide b, wide c, wide part) {
                            1 / (wide_max(g2 - g1, none) * width), part};
 }
 
-// Share of the area below t, and its integral up to t.
-static wide below(const struct slopes *s, wide t, wide *integral) {
+// Share of the area below t.
+static inline wide below(const struct slopes *s, wide t) {
+    const wide r = wide_min(wide_max(t, s->g0), s->g1) - s->g0;
+    const wide f = s->g2 - wide_min(wide_max(t, s->g1), s->g2), d = s->g2 - s->g1;
+    return r * r * s->rise + (d * d - f * f) * s->fall;
+}
+
+// Its integral up to t.
+static inline wide integral_below(const struct slopes *s, wide t) {
     const wide r = wide_min(wide_max(t, s->g0), s->g1) - s->g0;
     const wide c = wide_min(wide_max(t, s->g1), s->g2), f = s->g2 - c, d = s->g2 - s->g1;
-    *integral = r * r * r * s->rise * (1.0f / 3) + (c - s->g1) -
-                s->fall * (d * d * d - f * f * f) * (1.0f / 3) + wide_max(t - s->g2, wide_of(0));
-    return r * r * s->rise + (d * d - f * f) * s->fall;
+    return r * r * r * s->rise * (1.0f / 3) + (c - s->g1) -
+           s->fall * (d * d * d - f * f * f) * (1.0f / 3) + wide_max(t - s->g2, wide_of(0));
+}
+
+// Adds the shares in functions from out->first to the interval `last`, which takes what lies beyond.
+static void add_boxes(const struct overlap_axis *a, const struct slopes *s, uint32_t last, bool from_0,
+                      struct shares *out) {
+    const double *k = a->basis.knots;
+    const bool ends = a->gamma.kind == GAMMA_THETA_R && last + 1 == basis_intervals(&a->basis);
+    // Nothing lies below the first edge but rounding.
+    wide F = from_0 ? below(s, wide_of((float)k[out->first])) : wide_of(0);
+    for (uint32_t i = out->first; i <= last; i++) {
+        const wide F1 = i < last || ends ? below(s, wide_of((float)k[i + 1])) : wide_of(1);
+        out->share[i - out->first] += s->part * (F1 - F);
+        F = F1;
+    }
+}
+
+static void add_hats(const struct overlap_axis *a, const struct slopes *s, uint32_t last, bool from_0,
+                     struct shares *out) {
+    const double *k = a->basis.knots;
+    const bool ends = a->gamma.kind == GAMMA_THETA_R && last + 1 == basis_intervals(&a->basis);
+    const wide start = wide_of((float)k[out->first]), none = wide_of(0);
+    wide F = from_0 ? below(s, start) : none, I = integral_below(s, start);
+    for (uint32_t i = out->first; i <= last; i++) {
+        const wide end = wide_of((float)k[i + 1]);
+        const wide F1 = below(s, end), I1 = integral_below(s, end);
+        const wide mean = (I1 - I) * (float)(1 / (k[i + 1] - k[i]));
+        const wide beyond = i == last && !ends ? 1 - F1 : none;
+        wide *share = &out->share[i - out->first];
+        share[0] += s->part * wide_max(mean - F, none);
+        share[1] += s->part * (wide_max(F1 - mean, none) + beyond);
+        F = F1;
+        I = I1;
+    }
 }
 
 static void add_upper(const struct overlap_axis *a, const struct slopes *s, uint32_t last, bool from_0,
                       struct shares *out) {
-    const struct basis *b = &a->basis;
-    const double *k = b->knots;
-    const bool hat = b->kind == BASIS_HAT, ends = a->gamma.kind == GAMMA_THETA_R;
-    const uint32_t n = basis_intervals(b);
-    wide I, F = below(s, wide_of((float)k[out->first]), &I);
-    if (!from_0)
-        F = wide_of(0); // nothing lies below but rounding
-    for (uint32_t i = out->first; i <= last; i++) {
-        wide I1, F1 = below(s, wide_of((float)k[i + 1]), &I1), beyond = wide_of(0);
-        wide *share = &out->share[i - out->first];
-        if (i == last && !(ends && i + 1 == n))
-            beyond = 1 - F1;
-        if (!hat) {
-            share[0] += s->part * (F1 + beyond - F);
-        } else {
-            const wide mean = (I1 - I) * (float)(1 / (k[i + 1] - k[i])), none = wide_of(0);
-            share[0] += s->part * wide_max(mean - F, none);
-            share[1] += s->part * (wide_max(F1 - mean, none) + beyond);
-        }
-        F = F1;
-        I = I1;
-    }
+    if (a->basis.kind == BASIS_HAT)
+        add_hats(a, s, last, from_0, out);
+    else
+        add_boxes(a, s, last, from_0, out);
 }
 
 static uint32_t interval_of(const struct overlap_axis *a, double gamma) {

@@ -4,6 +4,7 @@
 
 #include "check.h"
 #include "curve/overlap.h"
+#include "integrator/wide_quotient.h"
 #include "math/wide_arc.h"
 
 static uint64_t state = 7;
@@ -79,8 +80,43 @@ static void angles_agree(void) {
     }
 }
 
+static void quotients_agree(void) {
+    for (int kind = 0; kind < QUOTIENT_COUNT; kind++) {
+        struct arena arena = {0};
+        struct quotient q = {.kind = (enum quotient_kind)kind, .roughness = 0.1, .isotropy = 0.5,
+                             .has_fresnel = kind % 2};
+        struct wide_quotient w;
+        double worst = 0;
+        for (int c = 0; c < CURVE_CHANNELS; c++)
+            q.fresnel[c] = (struct curve_function){
+                .kind = c ? FUNCTION_FRESNEL : FUNCTION_SCHLICK_F, .p = {c ? 1.5 : 0.04, c > 1 ? 3 : 0}};
+        wide_quotient_init(&w, &q, &arena);
+        for (int n = 0; n < 5000 && w.fits; n++) {
+            const struct direction wo = random_direction(0.01, 1);
+            struct wide3 wi;
+            wide out[CURVE_CHANNELS];
+            for (int i = 0; i < WIDE_LANES; i++)
+                wide3_set_lane(&wi, i, direction_round(random_direction(-0.1, 1)));
+            wide_quotient_cos(&w, wo, &wi, out);
+            for (int i = 0; i < WIDE_LANES; i++) {
+                const struct direction d = direction_from(wide3_lane(&wi, i));
+                struct angles a = angles_make((double[3]){wo.x, wo.y, wo.z}, (double[3]){d.x, d.y, d.z});
+                double expected[CURVE_CHANNELS];
+                quotient_cos(&q, &a, expected);
+                for (int c = 0; c < CURVE_CHANNELS; c++)
+                    worst = fmax(worst, fabs((double)out[c][i] - expected[c]) /
+                                            (fabs(expected[c]) + 1e-3));
+            }
+        }
+        printf("%-12s off by at most %.1e\n", quotient_names[kind], worst);
+        CHECK(worst < 3e-5);
+        arena_finish(&arena);
+    }
+}
+
 int main(void) {
     functions_agree();
     angles_agree();
+    quotients_agree();
     return check_result();
 }
