@@ -78,7 +78,12 @@ struct session {
 
 static bool write_numbered(const struct session *s, size_t step, const float *frame) {
     char path[4096];
-    const char *output = s->v->common.output, *point = strrchr(output, '.');
+    const char *output = s->v->common.output;
+    if (!output) {
+        log_error("%s: step %zu writes a picture; expected -o OUT.exr", s->v->script, step + 1);
+        return false;
+    }
+    const char *point = strrchr(output, '.');
     const int stem = point && !strchr(point, '/') ? (int)(point - output) : (int)strlen(output);
     if (snprintf(path, sizeof path, "%.*s.%04zu%s", stem, output, step + 1, output + stem) >=
         (int)sizeof path) {

@@ -124,23 +124,26 @@ static void add_groups(struct builder *b) {
 }
 
 struct tensor sample_make(const struct sample_options *o, struct arena *arena) {
-    struct builder b = {.arena = arena, .o = o, .rng = {o->seed + 1}};
+    struct builder b = {.arena = arena, .o = o, .rng = {1}};
     struct model_parameters p = model_defaults;
     const uint32_t bins = o->bins ? o->bins : 32;
     float *fixed = arena_alloc(arena, 3 * PIXELS * sizeof *fixed);
     b.meta = json_new_object();
     json_add_text(b.meta, "kind", "edit");
     json_add_text(b.meta, "scene hash", "0123456789abcdef");
+    json_add_count(b.meta, "samples", 16 + 16 * (int64_t)o->seed);
+    json_add_count(b.meta, "seed", (int64_t)o->seed);
     b.objects = json_add_array(b.meta, "objects");
     b.blocks = arena_alloc(arena, SAMPLE_BLOCKS * sizeof *b.blocks);
     p.exponent_u = 20;
     p.exponent_v = 50;
-    add_object(&b, 0, "pot.lid", "ashikhminshirley", &p, 8, BASIS_BOX);
+    add_object(&b, 0, "pot.lid", "ashikhminshirley", &p, bins < 8 ? bins : 8, BASIS_BOX);
     p.fixed_fresnel = true;
     p.diffuse[0] = p.diffuse[1] = p.diffuse[2] = 0.5;
     add_object(&b, 1, "cup", "blinnphong", &p, bins, bins > 1 ? BASIS_HAT : BASIS_BOX);
+    b.rng.state += o->seed; // what follows differs from sample to sample
     add_block(&b, "pot.lid", 0, 0, 3, 100, 1);
-    add_block(&b, "cup", 1, 0, 0, 83, 2);
+    add_block(&b, "cup", 1, 0, o->seed % 2, 83, 2); // lists differ, too
     add_block(&b, "cup", 1, 1, 0, 64, 2);
     if (o->polynomial) {
         add_block(&b, "", OBJECTS, 0, 110, 90, 1);
@@ -165,6 +168,30 @@ bool sample_write(const struct sample_options *o, const char *path) {
     json_destroy((struct json *)(uintptr_t)t.meta);
     arena_finish(&arena);
     return done;
+}
+
+static const char relight_basis[] = "{\"kind\": \"relight\", \"scene hash\": \"0\", \"basis\": "
+                                    "{\"type\": \"haar\", \"width\": 4, \"height\": 2}}";
+
+bool sample_write_relight(const char *path) {
+    enum { COEFFICIENTS = 8 };
+    static float weights[3 * COEFFICIENTS], some;
+    struct json *meta = json_parse(relight_basis, strlen(relight_basis), path);
+    uint32_t pixels[70];
+    for (uint32_t i = 0; i < 70; i++)
+        pixels[i] = 2 * i;
+    for (int i = 0; i < 3 * COEFFICIENTS; i++)
+        weights[i] = (float)(i % 5) - 1;
+    struct tensor_block b = {.object = "", .term = "", .axis_count = 1, .groups = 1,
+                             .axes = {{"cell", TENSOR_BOX, COEFFICIENTS, NULL}},
+                             .coefficients = COEFFICIENTS, .channels = 3, .pixel_count = 70,
+                             .pixels = pixels, .halves = &some, .weights = weights};
+    const struct tensor t = {SAMPLE_WIDTH, SAMPLE_HEIGHT, meta, 1, &b, NULL};
+    struct tensor_writer *w = tensor_create(path, &t);
+    for (size_t i = 0; w && i < tensor_bytes(&b) / 4; i++)
+        ((float *)tensor_values(w, 0))[i] = (float)(i % 7);
+    json_destroy(meta);
+    return w && tensor_finish(w);
 }
 
 // ---- truth ----------------------------------------------------------------------------------

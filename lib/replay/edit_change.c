@@ -117,6 +117,18 @@ static bool find_place(struct edit_tensor *e, const char *text, const char *end,
 
 // ---- curves -------------------------------------------------------------------------------------
 
+// Two curves of the largest values multiply to what single precision holds.
+static const double LARGEST = 1e15;
+
+static bool is_moderate(const struct curve *c, const char *at) {
+    for (size_t i = 0; i < (size_t)c->channels * c->basis.count; i++)
+        if (!(c->values[i] <= LARGEST)) {
+            log_error("%s: the curve would reach %g, expected at most %g", at, c->values[i], LARGEST);
+            return false;
+        }
+    return true;
+}
+
 static bool load_curve(struct edit_tensor *e, const char *text, const char *at,
                        struct edit_touch *touch) {
     const char *equals = strchr(text, '=');
@@ -125,7 +137,7 @@ static bool load_curve(struct edit_tensor *e, const char *text, const char *at,
     struct place p;
     if (!find_place(e, text, equals, at, &p))
         return false;
-    const bool good = curve_read(&file, &arena, equals + 1);
+    const bool good = curve_read(&file, &arena, equals + 1) && is_moderate(&file, at);
     if (good) {
         struct curve *own = p.object->curve[p.curve];
         struct curve fitted = curve_make(&arena, &own->basis, CURVE_CHANNELS);
@@ -152,9 +164,17 @@ static bool operate(struct edit_tensor *e, const char *text, const char *at,
     if (!find_place(e, text, colon, at, &p) ||
         !operators_parse(colon + 1, operators, MOST_OPERATORS, &count, at))
         return false;
-    curve_edit(p.object->curve[p.curve], p.channels, operators, count);
+    struct curve *own = p.object->curve[p.curve];
+    const size_t bytes = (size_t)own->channels * own->basis.count * sizeof *own->values;
+    double *before = mem_array(bytes, 1);
+    memcpy(before, own->values, bytes);
+    curve_edit(own, p.channels, operators, count);
+    const bool good = is_moderate(own, at);
+    if (!good)
+        memcpy(own->values, before, bytes);
+    mem_free(before);
     *touch = (struct edit_touch){p.object_index, p.curve, false};
-    return true;
+    return good;
 }
 
 // ---- numbers ------------------------------------------------------------------------------------

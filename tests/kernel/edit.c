@@ -192,7 +192,8 @@ static void wrong_changes_are_refused(void) {
         {EDIT_SET, "cup.specular#2.exponent=3"}, {EDIT_CURVE, "cup.specular.f_A=/nonexistent.csv"},
         {EDIT_CURVE, "cup.specular.f_B=x.csv"}, {EDIT_OPERATE, "cup.specular.f_A"},
         {EDIT_OPERATE, "cup.specular.f_A:amplify-y"}, {EDIT_OPERATE, "cup.specular.f_A.x:amplify-y,0,0,90,90,1"},
-        {EDIT_OPERATE, "cup.specular.f_A:translate-x,0,1,2,3,1"}, {EDIT_RESET, "cup.specular"},
+        {EDIT_OPERATE, "cup.specular.f_A:translate-x,0,1,2,3,1"},
+        {EDIT_OPERATE, "cup.specular.f_A:translate-y,0,0,90,90,1e99"}, {EDIT_RESET, "cup.specular"},
         {EDIT_RESET, ""},
     };
     const struct sample_options o = {.polynomial = false};

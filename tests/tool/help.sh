@@ -195,6 +195,7 @@ cp "$materials/film.bsdf" . && "$relume" brdf diffuse --to gold.binary >log
 "$relume" render scene.xml -o grace.exr --size 32x16 --quiet
 "$relume" precompute relight car.xml -o car.safetensors --basis pixels:32x16 --spp 64 --quiet
 cp "$materials/linear.safetensors" tea.safetensors
+cp "$materials/more.safetensors" .
 echo '{"steps": [{"set": "cup.exponent=40"}]}' >session.json
 "$relume" render scene.xml -o big.exr --size 32x32 --quiet
 "$relume" render scene.xml -o room.exr --size 16x16 --aov albedo --quiet

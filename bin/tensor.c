@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// relume tensor: the toolbox of tensor files.
+#include <string.h>
+
+#include "base/log.h"
+#include "subcommand.h"
+#include "transport/tensor_remake.h"
+
+struct values {
+    const char *verb, *output;
+    struct option_list files;
+    int crop[4];
+    bool half, drop_zeros, quiet, json;
+};
+
+#define AT(member) offsetof(struct values, member)
+
+static const struct option_argument arguments[] = {
+    {"VERB", AT(verb), "info: what it holds; check: whether all of it is sound;\n"
+     "merge: the mean of tensors with different seeds; crop: a part of the\n"
+     "picture; requantise: other storage (--half: 16 bits; else 32)", false, false},
+    {"T", AT(files), "tensors", false, true},
+    {.name = NULL},
+};
+
+static const struct option_spec options[] = {
+    {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output),
+     .argument = "OUT.safetensors", .help = "the tensor to write"},
+    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
+     .min = 0, .max = 65536, .help = "these pixels only; X1 and Y1 are just past the last"},
+    {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
+     .help = "store 16 bits (bfloat16) a coefficient"},
+    {.name = "drop-zeros", .type = OPTION_FLAG, .offset = AT(drop_zeros),
+     .help = "pixels whose coefficients are all zero leave the lists"},
+    OPTION_QUIET(struct values, quiet),
+    OPTION_JSON(struct values, json),
+    OPTION_END,
+};
+
+static void print(const struct values *v, struct json *out) {
+    if (v->json)
+        json_print(out, true);
+    else
+        json_print_lines(out);
+}
+
+static bool inform(const struct values *v) {
+    bool good = true;
+    for (size_t i = 0; i < v->files.count && good; i++) {
+        struct json *out = json_new_object();
+        struct tensor_file *f = tensor_open(v->files.items[i]);
+        good = f != NULL;
+        json_add_text(out, "file", v->files.items[i]);
+        if (good) {
+            tensor_describe(tensor_get(f), out);
+            print(v, out);
+        }
+        json_destroy(out);
+        tensor_close(f);
+    }
+    return good;
+}
+
+static bool check(const struct values *v) {
+    bool good = true;
+    for (size_t i = 0; i < v->files.count; i++) {
+        struct tensor_file *f = tensor_open(v->files.items[i]);
+        const bool sound = f && tensor_check_values(f);
+        if (sound && !v->quiet)
+            log_info("%s: sound", v->files.items[i]);
+        good = good && sound;
+        tensor_close(f);
+    }
+    return good;
+}
+
+static bool remake(const struct values *v, const char *command) {
+    const bool requantise = strcmp(v->verb, "requantise") == 0;
+    struct tensor_remake o = {
+        .paths = v->files.items, .count = v->files.count, .drop_zeros = v->drop_zeros,
+        .new_storage = v->half || requantise, .storage = v->half ? TENSOR_BF16 : TENSOR_F32,
+        .command = command};
+    struct tensor_remade r;
+    for (int i = 0; i < 4; i++)
+        o.crop[i] = (uint32_t)v->crop[i];
+    if (!tensor_remake(&o, v->output, &r))
+        return false;
+    if (!v->quiet)
+        log_info("%s: %llu pixels in lists (%llu dropped), %.1f MB; storage changes coefficients by at "
+                 "most %.2g of the largest", v->output, (unsigned long long)r.pixels,
+                 (unsigned long long)r.dropped, (double)r.bytes * 1e-6, r.worst);
+    if (v->json) {
+        struct json *out = json_new_object();
+        json_add_text(out, "output", v->output);
+        json_add_count(out, "samples", (int64_t)r.samples);
+        json_add_count(out, "pixels", (int64_t)r.pixels);
+        json_add_count(out, "dropped", (int64_t)r.dropped);
+        json_add_count(out, "bytes", (int64_t)r.bytes);
+        json_add_number(out, "worst_change", r.worst);
+        json_print(out, false);
+        json_destroy(out);
+    }
+    return true;
+}
+
+static int run(const void *values, const char *command) {
+    static const char *const verbs[] = {"info", "check", "merge", "crop", "requantise", NULL};
+    const struct values *v = values;
+    int verb = 0;
+    while (verbs[verb] && strcmp(verbs[verb], v->verb) != 0)
+        verb++;
+    if (!verbs[verb]) {
+        log_error("tensor %s: expected info, check, merge, crop or requantise", v->verb);
+        return EXIT_USAGE;
+    }
+    if (verb >= 2 && (!v->output || (verb == 2 ? v->files.count < 2 : v->files.count != 1) ||
+                      (verb == 3 && !v->crop[2]))) {
+        log_error("tensor %s: expected -o OUT, %s", v->verb,
+                  verb == 2 ? "and two tensors or more" : verb == 3 ? "one tensor, and --crop"
+                                                                    : "and one tensor");
+        return EXIT_USAGE;
+    }
+    if (v->quiet)
+        log_set_level(LOG_WARN);
+    const bool done = verb == 0 ? inform(v) : verb == 1 ? check(v) : remake(v, command);
+    return done ? EXIT_DONE : EXIT_FAILED;
+}
+
+const struct subcommand subcommand_tensor = {
+    .entry = {.name = "tensor", .help = "inspect, check, merge, crop and requantise tensors",
+              .size = sizeof(struct values)},
+    .options = {.options = options, .arguments = arguments,
+                .description = "Merging gives the exact mean of tensors of one scene that were "
+                               "precomputed with\ndifferent --seed, weighted by their samples.",
+                .examples = "  relume tensor info tea.safetensors\n"
+                            "  relume tensor check tea.safetensors\n"
+                            "  relume tensor requantise tea.safetensors -o small.safetensors --half\n"
+                            "  relume tensor crop tea.safetensors -o part.safetensors --crop 2,2,9,8\n"
+                            "  relume tensor merge tea.safetensors more.safetensors -o all.safetensors "
+                            "--drop-zeros\n"},
+    .run = run,
+};

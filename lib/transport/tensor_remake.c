@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "transport/tensor_remake.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/log.h"
+#include "base/mem.h"
+
+enum { ABSENT = UINT32_MAX };
+
+struct source {
+    struct tensor_file *file;
+    const struct tensor *tensor;
+    double share;   // of all samples
+    uint32_t *lane; // by pixel of the old picture, of the block that is worked on
+};
+
+struct remake {
+    const struct tensor_remake *options;
+    struct source *sources;
+    struct tensor tensor; // the new one
+    struct tensor_block *blocks;
+    struct json *meta;
+    struct arena arena;
+    uint32_t crop[4];
+    struct tensor_remade *result;
+    double largest;
+};
+
+// ---- sources ------------------------------------------------------------------------------------
+
+static bool fail(const struct remake *r, size_t source, const char *what) {
+    log_error("%s: %s", r->options->paths[source], what);
+    return false;
+}
+
+static bool same_value(const struct json *a, const struct json *b) {
+    if (!a || !b)
+        return a == b;
+    char *x = json_to_text(a), *y = json_to_text(b);
+    const bool same = strcmp(x, y) == 0;
+    mem_free(x);
+    mem_free(y);
+    return same;
+}
+
+// Whether what the coefficients mean is the same; samples and how they were made may differ.
+static bool same_meaning(const struct json *a, const struct json *b) {
+    static const char *const free_keys[] = {"samples", "seed", "command", "program", "scene", "blocks",
+                                            "merged", "packets", NULL};
+    for (int side = 0; side < 2; side++) {
+        const struct json *x = side ? b : a, *y = side ? a : b;
+        for (size_t i = 0; i < json_count(x); i++) {
+            const char *key = json_key(x, i);
+            bool free = false;
+            for (int k = 0; free_keys[k]; k++)
+                free = free || strcmp(free_keys[k], key) == 0;
+            if (!free && !same_value(json_get(x, key), json_get(y, key)))
+                return false;
+        }
+    }
+    return true;
+}
+
+static bool same_axis(const struct tensor_axis *a, const struct tensor_axis *b) {
+    return strcmp(a->name, b->name) == 0 && a->basis == b->basis && a->bins == b->bins &&
+           !a->edges == !b->edges &&
+           (!a->edges || memcmp(a->edges, b->edges, ((size_t)a->bins + 1) * sizeof *a->edges) == 0);
+}
+
+static bool same_block(const struct tensor_block *a, const struct tensor_block *b) {
+    bool same = strcmp(a->object, b->object) == 0 && strcmp(a->term, b->term) == 0 &&
+                a->axis_count == b->axis_count && a->groups == b->groups &&
+                a->coefficients == b->coefficients && !a->halves == !b->halves &&
+                !a->view == !b->view;
+    for (uint32_t i = 0; i < a->axis_count && same; i++)
+        same = same_axis(&a->axes[i], &b->axes[i]);
+    return same;
+}
+
+static bool same_shape(const struct remake *r, size_t source) {
+    const struct tensor *a = r->sources[0].tensor, *b = r->sources[source].tensor;
+    if (a->width != b->width || a->height != b->height || a->block_count != b->block_count ||
+        !a->fixed != !b->fixed || !same_meaning(a->meta, b->meta))
+        return fail(r, source, "is not of the same scene, objects and size as the first tensor");
+    for (uint32_t i = 0; i < a->block_count; i++)
+        if (!same_block(&a->blocks[i], &b->blocks[i]))
+            return fail(r, source, "has other blocks than the first tensor");
+    return true;
+}
+
+static int64_t samples_of(const struct tensor *t) {
+    int64_t n = 0;
+    json_read_integer(json_get(t->meta, "samples"), &n);
+    return n;
+}
+
+// What a source is made of: its "merged", or itself.
+static size_t parts_of(const struct tensor *t, size_t i, int64_t *seed, int64_t *samples) {
+    const struct json *merged = json_get(t->meta, "merged");
+    const struct json *at = merged ? json_at(merged, i) : t->meta;
+    *seed = *samples = 0;
+    json_read_integer(json_get(at, "seed"), seed);
+    json_read_integer(json_get(at, "samples"), samples);
+    return merged ? json_count(merged) : 1;
+}
+
+// Lists the parts of all sources. Two of one seed are not independent.
+static bool list_parts(struct remake *r) {
+    struct json *list = json_add_array(r->meta, "merged");
+    for (size_t s = 0; s < r->options->count; s++) {
+        int64_t seed, samples, other;
+        const size_t n = parts_of(r->sources[s].tensor, 0, &seed, &samples);
+        for (size_t i = 0; i < n; i++) {
+            parts_of(r->sources[s].tensor, i, &seed, &samples);
+            for (size_t k = 0; k < json_count(list); k++)
+                if (json_read_integer(json_get(json_at(list, k), "seed"), &other) && other == seed)
+                    return fail(r, s, "has a seed that is among the others: it adds nothing new");
+            struct json *part = json_append_object(list);
+            json_add_count(part, "seed", seed);
+            json_add_count(part, "samples", samples);
+        }
+    }
+    return true;
+}
+
+static bool open_sources(struct remake *r) {
+    double all = 0;
+    for (size_t s = 0; s < r->options->count; s++) {
+        struct source *source = &r->sources[s];
+        source->file = tensor_open(r->options->paths[s]);
+        if (!source->file)
+            return false;
+        source->tensor = tensor_get(source->file);
+        if (s > 0 && !same_shape(r, s))
+            return false;
+        source->share = (double)samples_of(source->tensor);
+        if (r->options->count > 1 && !(source->share > 0))
+            return fail(r, s, "does not tell its samples");
+        all += source->share;
+    }
+    for (size_t s = 0; s < r->options->count; s++)
+        r->sources[s].share = r->options->count > 1 ? r->sources[s].share / all : 1;
+    r->result->samples = (uint64_t)all;
+    return true;
+}
+
+// ---- lists --------------------------------------------------------------------------------------
+
+static bool is_inside(const struct remake *r, uint32_t pixel) {
+    const uint32_t x = pixel % r->sources[0].tensor->width, y = pixel / r->sources[0].tensor->width;
+    return x >= r->crop[0] && x < r->crop[2] && y >= r->crop[1] && y < r->crop[3];
+}
+
+static double value_at(const struct tensor_block *b, const void *values, size_t i) {
+    return b->storage == TENSOR_BF16 ? (double)bf16_to_float(((const uint16_t *)values)[i])
+                                     : (double)((const float *)values)[i];
+}
+
+static size_t place_of(const struct tensor_block *b, uint32_t lane, size_t row) {
+    return (lane / TENSOR_LANES * (size_t)b->coefficients * b->channels + row) * TENSOR_LANES +
+           lane % TENSOR_LANES;
+}
+
+static bool is_zero(const struct tensor_block *b, uint32_t lane) {
+    for (size_t row = 0; row < (size_t)b->coefficients * b->channels; row++)
+        if (value_at(b, b->values, place_of(b, lane, row)) != 0)
+            return false;
+    return true;
+}
+
+// Where each pixel stands in the lists of a block.
+static void find_lanes(struct remake *r, uint32_t block) {
+    for (size_t s = 0; s < r->options->count; s++) {
+        struct source *source = &r->sources[s];
+        const struct tensor_block *b = &source->tensor->blocks[block];
+        const size_t plane = (size_t)source->tensor->width * source->tensor->height;
+        if (!source->lane)
+            source->lane = mem_array(plane, sizeof *source->lane);
+        memset(source->lane, 0xff, plane * sizeof *source->lane);
+        for (uint32_t i = 0; i < b->pixel_count; i++)
+            source->lane[b->pixels[i]] = i;
+    }
+}
+
+static bool is_kept(const struct remake *r, uint32_t block, uint32_t pixel) {
+    bool listed = false, zero = true;
+    for (size_t s = 0; s < r->options->count; s++) {
+        const uint32_t lane = r->sources[s].lane[pixel];
+        listed = listed || lane != ABSENT;
+        if (lane != ABSENT && zero && r->options->drop_zeros)
+            zero = is_zero(&r->sources[s].tensor->blocks[block], lane);
+    }
+    if (listed && zero && r->options->drop_zeros)
+        r->result->dropped++;
+    return listed && !(zero && r->options->drop_zeros);
+}
+
+// The new list, as pixels of the old picture.
+static uint32_t *list_pixels(struct remake *r, uint32_t block, uint64_t *count) {
+    const struct tensor *t = r->sources[0].tensor;
+    const size_t plane = (size_t)t->width * t->height;
+    uint32_t *list = mem_array(plane, sizeof *list);
+    *count = 0;
+    for (uint32_t p = 0; p < plane; p++)
+        if (is_inside(r, p) && is_kept(r, block, p))
+            list[(*count)++] = p;
+    return list;
+}
+
+static float view_at(const struct remake *r, uint32_t block, uint32_t pixel) {
+    double sum = 0, all = 0;
+    for (size_t s = 0; s < r->options->count; s++) {
+        const uint32_t lane = r->sources[s].lane[pixel];
+        if (lane == ABSENT)
+            continue;
+        sum += r->sources[s].share * (double)r->sources[s].tensor->blocks[block].view[lane];
+        all += r->sources[s].share;
+    }
+    return (float)(sum / all);
+}
+
+static void shape_block(struct remake *r, uint32_t block) {
+    static const float some;
+    struct tensor_block *b = &r->blocks[block];
+    uint64_t count;
+    find_lanes(r, block);
+    uint32_t *list = list_pixels(r, block, &count);
+    uint32_t *pixels = arena_alloc(&r->arena, (count + 1) * sizeof *pixels);
+    *b = r->sources[0].tensor->blocks[block];
+    b->pixel_count = count;
+    b->storage = r->options->new_storage ? r->options->storage : b->storage;
+    b->halves = b->halves ? &some : NULL;
+    b->pixels = pixels;
+    float *view = b->view ? arena_alloc(&r->arena, (tensor_tiles(b) + 1) * TENSOR_LANES * 4) : NULL;
+    for (uint64_t i = 0; i < count; i++) {
+        const uint32_t w = r->sources[0].tensor->width;
+        pixels[i] = (list[i] / w - r->crop[1]) * r->tensor.width + list[i] % w - r->crop[0];
+        if (view)
+            view[i] = view_at(r, block, list[i]);
+    }
+    b->view = view;
+    r->result->pixels += count;
+    r->result->bytes += tensor_bytes(b) * (b->halves ? 2 : 1);
+    mem_free(list);
+}
+
+// ---- values -------------------------------------------------------------------------------------
+
+static void put(struct remake *r, const struct tensor_block *b, void *out, size_t at, double v) {
+    double stored;
+    if (b->storage == TENSOR_BF16) {
+        const uint16_t h = bf16_from_float((float)v);
+        ((uint16_t *)out)[at] = h;
+        stored = (double)bf16_to_float(h);
+    } else {
+        ((float *)out)[at] = (float)v;
+        stored = (double)(float)v;
+    }
+    r->result->worst = fmax(r->result->worst, fabs(stored - v));
+    r->largest = fmax(r->largest, fabs(v));
+}
+
+static void fill(struct remake *r, uint32_t block, bool halves, void *out) {
+    const struct tensor_block *b = &r->blocks[block];
+    const size_t rows = (size_t)b->coefficients * b->channels;
+    const uint32_t w = r->sources[0].tensor->width;
+    for (uint32_t i = 0; i < b->pixel_count; i++) {
+        const uint32_t p = b->pixels[i];
+        const uint32_t old = (p / r->tensor.width + r->crop[1]) * w + p % r->tensor.width + r->crop[0];
+        for (size_t row = 0; row < rows; row++) {
+            double sum = 0;
+            for (size_t s = 0; s < r->options->count; s++) {
+                const struct tensor_block *from = &r->sources[s].tensor->blocks[block];
+                const uint32_t lane = r->sources[s].lane[old];
+                if (lane != ABSENT)
+                    sum += r->sources[s].share * value_at(from, halves ? from->halves : from->values,
+                                                          place_of(from, lane, row));
+            }
+            put(r, b, out, place_of(b, i, row), sum);
+        }
+    }
+}
+
+static void fill_fixed(const struct remake *r, float *out) {
+    const struct tensor *t = &r->tensor, *old = r->sources[0].tensor;
+    for (size_t k = 0; k < 3; k++)
+        for (size_t y = 0; y < t->height; y++)
+            for (size_t x = 0; x < t->width; x++) {
+                double sum = 0;
+                for (size_t s = 0; s < r->options->count; s++)
+                    sum += r->sources[s].share *
+                           (double)r->sources[s].tensor->fixed[(k * old->height + y + r->crop[1]) *
+                                                                   old->width + x + r->crop[0]];
+                out[(k * t->height + y) * t->width + x] = (float)sum;
+            }
+}
+
+static bool write_all(struct remake *r, const char *output) {
+    struct tensor_writer *w = tensor_create(output, &r->tensor);
+    if (!w)
+        return false;
+    for (uint32_t i = 0; i < r->tensor.block_count; i++) {
+        find_lanes(r, i);
+        fill(r, i, false, tensor_values(w, i));
+        if (r->blocks[i].halves)
+            fill(r, i, true, tensor_halves(w, i));
+    }
+    if (r->tensor.fixed)
+        fill_fixed(r, tensor_fixed(w));
+    r->result->worst = r->largest > 0 ? r->result->worst / r->largest : 0;
+    return tensor_finish(w);
+}
+
+// ---- all ----------------------------------------------------------------------------------------
+
+static bool set_crop(struct remake *r) {
+    const struct tensor *t = r->sources[0].tensor;
+    const uint32_t *c = r->options->crop;
+    const uint32_t all[4] = {0, 0, t->width, t->height};
+    memcpy(r->crop, c[2] ? c : all, sizeof r->crop);
+    if (r->crop[0] < r->crop[2] && r->crop[1] < r->crop[3] && r->crop[2] <= t->width &&
+        r->crop[3] <= t->height)
+        return true;
+    log_error("crop %u,%u,%u,%u is not inside the picture of %ux%u", c[0], c[1], c[2], c[3], t->width,
+              t->height);
+    return false;
+}
+
+static bool remake(struct remake *r, const char *output) {
+    static const float some;
+    const struct tensor *first;
+    if (!open_sources(r) || !set_crop(r))
+        return false;
+    first = r->sources[0].tensor;
+    r->meta = json_clone(first->meta);
+    if (r->options->count > 1) {
+        json_add_count(r->meta, "samples", (int64_t)r->result->samples);
+        if (!list_parts(r))
+            return false;
+    }
+    json_add_text(r->meta, "command", r->options->command);
+    r->blocks = arena_alloc(&r->arena, (first->block_count + 1) * sizeof *r->blocks);
+    r->tensor = (struct tensor){r->crop[2] - r->crop[0], r->crop[3] - r->crop[1], r->meta,
+                                first->block_count, r->blocks, first->fixed ? &some : NULL};
+    for (uint32_t i = 0; i < first->block_count; i++)
+        shape_block(r, i);
+    return write_all(r, output);
+}
+
+bool tensor_remake(const struct tensor_remake *o, const char *output, struct tensor_remade *result) {
+    struct remake r = {.options = o, .result = result};
+    *result = (struct tensor_remade){0};
+    r.sources = mem_array(o->count, sizeof *r.sources);
+    const bool done = remake(&r, output);
+    for (size_t s = 0; s < o->count; s++) {
+        tensor_close(r.sources[s].file);
+        mem_free(r.sources[s].lane);
+    }
+    mem_free(r.sources);
+    json_destroy(r.meta);
+    arena_finish(&r.arena);
+    return done;
+}
+
+static void describe_block(const struct tensor_block *b, struct json *j) {
+    json_add_text(j, "object", b->object);
+    json_add_text(j, "term", b->term);
+    json_add_count(j, "pixels", (int64_t)b->pixel_count);
+    json_add_count(j, "groups", b->groups);
+    for (uint32_t i = 0; i < b->axis_count; i++)
+        json_add_count(j, b->axes[i].name, b->axes[i].bins);
+    json_add_count(j, "coefficients", b->coefficients);
+    json_add_text(j, "storage", b->storage == TENSOR_BF16 ? "bf16" : "f32");
+    json_add_bool(j, "halves", b->halves != NULL);
+    json_add_count(j, "bytes", (int64_t)tensor_bytes(b));
+}
+
+void tensor_describe(const struct tensor *t, struct json *out) {
+    json_add_count(out, "width", t->width);
+    json_add_count(out, "height", t->height);
+    for (size_t i = 0; i < json_count(t->meta); i++) {
+        const char *key = json_key(t->meta, i), *text = json_text(json_get(t->meta, key));
+        double number;
+        if (text)
+            json_add_text(out, key, text);
+        else if (strcmp(key, "width") != 0 && strcmp(key, "height") != 0 &&
+                 json_read_number(json_get(t->meta, key), &number))
+            json_add_number(out, key, number);
+    }
+    json_add_bool(out, "fixed", t->fixed != NULL);
+    struct json *blocks = json_add_array(out, "blocks");
+    for (uint32_t i = 0; i < t->block_count; i++)
+        describe_block(&t->blocks[i], json_append_object(blocks));
+}
