@@ -28,6 +28,10 @@ struct editable_value {
 const struct form *editable_form(const struct object *material);
 // The model its curves were generated from, and the numbers that went into them.
 const char *editable_model(const struct object *material, struct model_parameters *p);
+// Puts the curves and scales of an edited form in place of a prepared material's own, whose terms it
+// must have; to be called before rendering. false after an error message that names `at`.
+bool editable_set_form(struct object *material, const struct form *edited, struct arena *arena,
+                       const char *at);
 // The textured factor of a term, or what it is where there is no texture.
 const struct texture_ref *editable_texture(const struct object *material, uint32_t term);
 

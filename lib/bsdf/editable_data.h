@@ -20,6 +20,7 @@ struct editable {
     bool literal, fixed_fresnel;
     const char *curve[MODEL_CURVES]; // files
     const char *edit[SLOTS];         // operators on the first term's curves
+    const char *edited;              // file with a form
     int bins, bins_b, bins_constant, basis, spacing, weighting;
     const struct object *child[EDITABLE_CHILDREN]; // more terms
 

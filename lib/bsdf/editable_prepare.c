@@ -3,8 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "bsdf/editable.h"
 #include "bsdf/editable_albedo.h"
+#include "curve/form_json.h"
 #include "curve/operators.h"
 
 #define AT(member) offsetof(struct editable, member)
@@ -75,6 +77,8 @@ const struct param editable_params[] = {
      .help = "operators on the first term's f_A"},
     {"edit_b", PARAM_STRING, AT(edit[SLOT_B]), .unit = "", .optional = true,
      .help = "operators on the first term's f_B"},
+    {"edited", PARAM_FILE, AT(edited), .unit = "", .optional = true,
+     .help = "JSON file with edited curves and factors of all terms (edit --save-scene)"},
     {"bins", PARAM_INT, AT(bins), .def = "256", .min = 2, .max = 4096, .unit = "",
      .help = "coefficients of a curve that is generated; files keep their own bins"},
     {"bins_b", PARAM_INT, AT(bins_b), .def = "-1", .min = -1, .max = 4096, .unit = "",
@@ -282,13 +286,7 @@ static bool is_anisotropic(const struct form_term *t) {
     return t->quotient.kind == QUOTIENT_SCHLICK && t->quotient.isotropy < 1;
 }
 
-bool editable_prepare(struct object *self, struct arena *arena) {
-    struct editable *e = self->data;
-    char at[300];
-    snprintf(at, sizeof at, "%s:%d: editable", self->at.file ? self->at.file : "", self->at.line);
-    if (!conductor_index_prepare(&e->index, self) || !make_own_terms(e, at, arena) ||
-        !add_children(e, self) || !bsdf_check_nesting(self))
-        return false;
+static void finish(struct editable *e, struct arena *arena) {
     for (uint32_t c = 0; c < e->form.curves; c++)
         e->values[c] = curve_spectra(e->form.curve[c].f[0].table, arena);
     for (uint32_t t = 0; t < e->form.terms; t++) {
@@ -297,5 +295,53 @@ bool editable_prepare(struct object *self, struct arena *arena) {
         e->lobes |= e->lobe[t] | (is_anisotropic(&e->form.term[t]) ? LOBE_ANISOTROPIC : 0);
     }
     editable_measure(e);
+}
+
+bool editable_set_form(struct object *material, const struct form *edited, struct arena *arena,
+                       const char *at) {
+    struct editable *e = material->data;
+    if (!form_same_shape(&e->form, edited)) {
+        log_error("%s: the edited form has other terms, angles or quotients than the material", at);
+        return false;
+    }
+    for (uint32_t t = 0; t < edited->terms; t++)
+        memcpy(e->form.term[t].scale, edited->term[t].scale, sizeof edited->term[t].scale);
+    for (uint32_t c = 0; c < edited->curves; c++) {
+        const struct basis *own = &e->form.curve[c].f[0].table->basis;
+        struct curve *table = arena_alloc(arena, sizeof *table);
+        *table = curve_make(arena, own, CURVE_CHANNELS);
+        for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+            function_project(table, k, &edited->curve[c].f[k], form_filter(edited, c));
+        for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+            e->form.curve[c].f[k] =
+                (struct curve_function){.kind = FUNCTION_TABLE, .table = table, .channel = k};
+    }
+    finish(e, arena);
+    return true;
+}
+
+// What `relume edit --save-scene` wrote beside the scene.
+static bool read_form(struct object *self, const char *path, struct arena *arena) {
+    struct form f;
+    size_t size;
+    char *text = file_read(path, 256u << 20, &size);
+    struct json *j = text ? json_parse(text, size, path) : NULL;
+    const bool good = j && form_from_json(&f, j, arena, path) &&
+                      editable_set_form(self, &f, arena, path);
+    json_destroy(j);
+    mem_free(text);
+    return good;
+}
+
+bool editable_prepare(struct object *self, struct arena *arena) {
+    struct editable *e = self->data;
+    char at[300];
+    snprintf(at, sizeof at, "%s:%d: editable", self->at.file ? self->at.file : "", self->at.line);
+    if (!conductor_index_prepare(&e->index, self) || !make_own_terms(e, at, arena) ||
+        !add_children(e, self) || !bsdf_check_nesting(self))
+        return false;
+    if (e->edited)
+        return read_form(self, e->edited, arena);
+    finish(e, arena);
     return true;
 }

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error that relume verify tells of an edited picture is the true one: that of the tensor's own
+// noise where its model of light is exact, and far more where the picture is wrong.
+#include "driver/verify.h"
+
+#include "driver/precompute_polynomial.h"
+#include "render/picture.h"
+
+// Light that is reflected once: the tensor differs from a path tracer by noise and bins alone.
+static const char scene[] =
+    "<scene version='3.0.0'><integrator type='path'/><sensor type='perspective'>"
+    "<float name='fov' value='45'/><transform name='to_world'>"
+    "<lookat origin='0,2,4' target='0,0.4,0' up='0,1,0'/></transform><sampler type='sobol'/>"
+    "<film type='hdrfilm'><integer name='width' value='30'/><integer name='height' value='22'/>"
+    "<rfilter type='box'/></film></sensor><emitter type='constant'>"
+    "<rgb name='radiance' value='%s'/></emitter>"
+    "<shape type='rectangle'><transform name='to_world'><scale value='5'/>"
+    "<rotate x='1' angle='-90'/></transform><bsdf type='diffuse' id='floor'>"
+    "<rgb name='reflectance' value='0.5,0.4,0.3'/></bsdf></shape>"
+    "<shape type='sphere'><point name='center' x='0' y='0.8' z='0'/><float name='radius' value='0.8'/>"
+    "<bsdf type='editable' id='ball'><string name='model' value='blinnphong'/>"
+    "<float name='exponent' value='10'/><boolean name='fixed_fresnel' value='true'/>"
+    "<integer name='bins' value='64'/><rgb name='diffuse_reflectance' value='0.4,0.2,0.1'/></bsdf>"
+    "</shape></scene>";
+
+static char scene_file[256], tensor_file[256], edits_file[256];
+
+static void prepare(void) {
+    char text[4000];
+    static const char *const floor[] = {"floor"};
+    struct polynomial_report report;
+    snprintf(scene_file, sizeof scene_file, "%s", scene_path("scene.xml"));
+    snprintf(tensor_file, sizeof tensor_file, "%s", scene_path("t.safetensors"));
+    snprintf(edits_file, sizeof edits_file, "%s", scene_path("edits.json"));
+    snprintf(text, sizeof text, scene, "1,0.9,0.8");
+    scene_write("scene.xml", text);
+    scene_write("edits.json",
+                "{\"steps\": [{\"set\": [\"ball.exponent=25\", \"floor.reflectance=0.7\"]},"
+                "{\"op\": \"ball.specular.f_A:amplify-y,10,20,30,40,1.5\"}]}");
+    const struct polynomial_options o = {
+        .job = {.scene = scene_file, .spp = 256, .threads = 2}, .edit = floor, .edit_count = 1,
+        .bounces = 1, .series = {256}, .output = tensor_file, .command = "test", .version = "test"};
+    CHECK(precompute_polynomial(&o, &report));
+}
+
+static struct verify_result verify(const char *edits, int spp) {
+    struct verify_result r;
+    const struct verify_options o = {
+        .job = {.scene = scene_file, .spp = spp, .threads = 2, .seed = 5}, .tensor = tensor_file,
+        .edits = edits, .pixels = 320, .no_device = true};
+    CHECK(verify_edit(&o, &r));
+    printf("%s: relMSE %.2e +- %.1e, of it noise %.2e, bias %+.2e, mean %.3f, %u pixels\n",
+           edits ? "edited" : "as it is", r.relmse, r.relmse_error, r.noise, r.bias, r.mean, r.pixels);
+    return r;
+}
+
+// relMSE is the tensor's noise within the interval, but for the bins (below 1e-4 here).
+static void noise_is_told(const struct verify_result *r) {
+    CHECK(r->pixels >= 240 && r->blocks == 20 && r->bounces == 1);
+    CHECK(r->noise > 0 && fabs(r->relmse - r->noise) < 2 * r->relmse_error + 1e-4);
+    CHECK(fabs(r->bias) < 0.02);
+}
+
+static void another_scene_is_refused(void) {
+    char text[4000];
+    struct verify_result r;
+    snprintf(text, sizeof text, scene, "1,0.9,0.7");
+    scene_write("other.xml", text);
+    const struct verify_options o = {.job = {.scene = scene_path("other.xml"), .threads = 2},
+                                     .tensor = tensor_file, .pixels = 16, .no_device = true};
+    capture_begin();
+    const bool done = verify_edit(&o, &r);
+    capture_end();
+    CHECK(!done && captured_has("is not the scene that"));
+}
+
+int main(void) {
+    scene_folder_open();
+    prepare();
+    const struct verify_result plain = verify(NULL, 256), edited = verify(edits_file, 256);
+    noise_is_told(&plain);
+    noise_is_told(&edited);
+    another_scene_is_refused();
+    scene_folder_close();
+    return check_result();
+}
