@@ -10,11 +10,12 @@
 #include "replay/edit_script.h"
 #include "replay/measure.h"
 #include "replay/picture.h"
+#include "replay/save_scene.h"
 #include "replay_report.h"
 #include "subcommand.h"
 
 struct values {
-    const char *tensor, *script;
+    const char *tensor, *script, *save, *scene;
     struct replay_values common;
     int terms;
     bool list;
@@ -42,6 +43,10 @@ static const struct option_spec options[] = {
      .argument = "OBJECT.TERM.f_A:OPERATORS", .help = "change a curve in place (see below)"},
     {.name = "script", .type = OPTION_TEXT, .offset = AT(script), .argument = "EDITS.json",
      .help = "play an editing session after these (see below)"},
+    {.name = "save-scene", .type = OPTION_TEXT, .offset = AT(save), .argument = "OUT.xml",
+     .help = "write the scene with the edited materials, their curves in files beside it"},
+    {.name = "scene", .type = OPTION_TEXT, .offset = AT(scene), .argument = "SCENE.xml",
+     .help = "where the tensor's scene is, for --save-scene, if not where it was"},
     {.name = "terms", .type = OPTION_INT, .offset = AT(terms), .argument = "N", .min = 0,
      .max = 1 << 28, .def = "0",
      .help = "of a session: most coefficients a frame may change; 0: as the script says"},
@@ -164,6 +169,14 @@ static bool change_all(const struct values *v, struct edit *e) {
     return good;
 }
 
+static bool save(const struct values *v, const struct edit_tensor *e) {
+    const char *scene = v->scene ? v->scene : json_text(json_get(e->tensor->meta, "scene"));
+    if (scene)
+        return save_scene(e, scene, v->save);
+    log_error("%s: does not tell its scene; expected --scene", v->tensor);
+    return false;
+}
+
 static bool evaluate(struct session *s, const struct edit_script *script, struct json *out) {
     const struct values *v = s->v;
     const size_t plane = (size_t)s->tensor->width * s->tensor->height;
@@ -177,6 +190,7 @@ static bool evaluate(struct session *s, const struct edit_script *script, struct
     bool good = e && change_all(v, e) &&
                 edit_script_play(script, e, v->script, frame, on_frame, s);
     good = good && (!v->common.output || make_picture(s, &evaluation, &timing, variance));
+    good = good && (!v->save || save(v, edit_objects(e)));
     if (good && v->common.output)
         replay_report(&v->common, &timing, out);
     edit_destroy(e);
@@ -217,8 +231,8 @@ static bool edit_file(const struct values *v, const char *command, const struct 
 
 static int run(const void *values, const char *command) {
     const struct values *v = values;
-    if (!v->list && !v->script && !v->common.output) {
-        log_error("edit: expected --list, -o OUT.exr or --script EDITS.json");
+    if (!v->list && !v->script && !v->common.output && !v->save) {
+        log_error("edit: expected --list, -o OUT.exr, --script EDITS.json or --save-scene OUT.xml");
         return EXIT_USAGE;
     }
     if (v->common.quiet)

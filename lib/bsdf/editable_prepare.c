@@ -307,7 +307,9 @@ bool editable_set_form(struct object *material, const struct form *edited, struc
     for (uint32_t t = 0; t < edited->terms; t++)
         memcpy(e->form.term[t].scale, edited->term[t].scale, sizeof edited->term[t].scale);
     for (uint32_t c = 0; c < edited->curves; c++) {
-        const struct basis *own = &e->form.curve[c].f[0].table->basis;
+        const struct curve_function *f = &edited->curve[c].f[0];
+        const struct basis *own = f->kind == FUNCTION_TABLE ? &f->table->basis
+                                                            : &e->form.curve[c].f[0].table->basis;
         struct curve *table = arena_alloc(arena, sizeof *table);
         *table = curve_make(arena, own, CURVE_CHANNELS);
         for (uint32_t k = 0; k < CURVE_CHANNELS; k++)

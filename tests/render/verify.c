@@ -4,6 +4,8 @@
 #include "driver/verify.h"
 
 #include "driver/precompute_polynomial.h"
+#include "replay/edit_script.h"
+#include "replay/save_scene.h"
 #include "render/picture.h"
 
 // Light that is reflected once: the tensor differs from a path tracer by noise and bins alone.
@@ -61,6 +63,46 @@ static void noise_is_told(const struct verify_result *r) {
     CHECK(fabs(r->bias) < 0.02);
 }
 
+// The edited scene, saved and read back, has the edited forms, and renders.
+static void saved_scenes_come_back(void) {
+    char saved[256];
+    struct edit_script script;
+    struct edit_tensor e;
+    struct tensor_file *f = tensor_open(tensor_file);
+    struct edit_plan plan;
+    struct job job;
+    snprintf(saved, sizeof saved, "%s", scene_path("saved.xml"));
+    CHECK(edit_tensor_init(&e, tensor_get(f), tensor_file) &&
+          edit_script_read(&script, edits_file) && edit_script_apply(&script, &e, edits_file));
+    CHECK(save_scene(&e, scene_file, saved));
+    const struct job_options o = {.scene = saved, .spp = 4, .threads = 2};
+    const bool opened = job_open(&job, &o);
+    CHECK(opened && edit_plan_init(&plan, job.scene) && plan.count == e.object_count);
+    for (uint32_t i = 0; i < plan.count; i++) {
+        const struct edited_object *edited = &e.objects[i];
+        const struct form *form = plan.objects[i].form;
+        CHECK(strcmp(plan.objects[i].name, edited->name) == 0 &&
+              form_same_shape(form, &edited->form));
+        for (uint32_t t = 0; t < form->terms; t++)
+            CHECK(memcmp(form->term[t].scale, edited->form.term[t].scale,
+                         sizeof form->term[t].scale) == 0);
+        for (uint32_t c = 0; c < form->curves; c++)
+            for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+                CHECK(memcmp(curve_values(form->curve[c].f[k].table, k),
+                             curve_values(edited->curve[c], k),
+                             sizeof(double) * edited->curve[c]->basis.count) == 0);
+    }
+    struct render_result result;
+    struct film *film = job_render(&job, &result);
+    CHECK(film_samples(film) == 4);
+    film_destroy(film);
+    edit_plan_finish(&plan);
+    job_close(&job);
+    edit_script_finish(&script);
+    edit_tensor_finish(&e);
+    tensor_close(f);
+}
+
 static void another_scene_is_refused(void) {
     char text[4000];
     struct verify_result r;
@@ -80,6 +122,7 @@ int main(void) {
     const struct verify_result plain = verify(NULL, 256), edited = verify(edits_file, 256);
     noise_is_told(&plain);
     noise_is_told(&edited);
+    saved_scenes_come_back();
     another_scene_is_refused();
     scene_folder_close();
     return check_result();
