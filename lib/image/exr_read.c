@@ -207,7 +207,16 @@ static bool read_tiles(struct reader *r, const struct exr_errors *errors) {
     return true;
 }
 
-// Strings and numbers; other types are of no use here.
+// Attributes that say how a file is laid out are the file's, not the picture's.
+static void attribute_key(const char *name, char key[IMAGE_NAME_SIZE]) {
+    static const char *const layout[] = {"type", "name", "version", "chunkCount", "pixelAspectRatio",
+                                         "screenWindowWidth", "dwaCompressionLevel", NULL};
+    snprintf(key, IMAGE_NAME_SIZE, "%s", name);
+    for (int i = 0; layout[i]; i++)
+        if (strcmp(name, layout[i]) == 0)
+            snprintf(key, IMAGE_NAME_SIZE, "file.%s", layout[i]);
+}
+
 static void read_chromaticities(struct reader *r, const exr_attribute_t *a) {
     const exr_attr_chromaticities_t *c = a->chromaticities;
     char text[256];
@@ -217,6 +226,7 @@ static void read_chromaticities(struct reader *r, const exr_attribute_t *a) {
     image_set_text(r->im, a->name, text);
 }
 
+// Strings, numbers and primaries; other types are of no use here.
 static void read_attributes(struct reader *r) {
     int32_t n = 0;
     exr_get_attribute_count(r->context, 0, &n);
@@ -226,12 +236,14 @@ static void read_attributes(struct reader *r) {
                 EXR_ERR_SUCCESS ||
             strlen(a->name) >= IMAGE_NAME_SIZE)
             continue;
+        char key[IMAGE_NAME_SIZE];
+        attribute_key(a->name, key);
         if (a->type == EXR_ATTR_STRING && a->string->length < 1 << 20)
-            image_set_text(r->im, a->name, a->string->str ? a->string->str : "");
+            image_set_text(r->im, key, a->string->str ? a->string->str : "");
         else if (a->type == EXR_ATTR_CHROMATICITIES)
             read_chromaticities(r, a);
         else if (a->type == EXR_ATTR_DOUBLE || a->type == EXR_ATTR_FLOAT || a->type == EXR_ATTR_INT)
-            image_set_number(r->im, a->name, a->type == EXR_ATTR_DOUBLE  ? a->d
+            image_set_number(r->im, key, a->type == EXR_ATTR_DOUBLE  ? a->d
                                              : a->type == EXR_ATTR_FLOAT ? (double)a->f
                                                                          : a->i);
     }
