@@ -206,8 +206,8 @@ static void faults(void) {
                 "a second bsdf in one shape");
     check_fault("<shape type='cube'><emitter type='area'/><emitter type='area'/></shape>",
                 "a second emitter in one shape");
-    check_fault("<shape type='cube'><sensor type='perspective'/></shape>",
-                "a <sensor> cannot stand in a shape");
+    check_fault("<shape type='cube'><sensor type='irradiancemeter'/><sensor type='irradiancemeter'/>"
+                "</shape>", "a second sensor in one shape");
     check_fault("<shape type='instance'/>", "an instance holds exactly one shapegroup");
     check_fault("<shape type='instance'><shape type='cube'/></shape>", "exactly one shapegroup");
     check_fault("<shape type='shapegroup'><shape type='instance'/></shape>",
