@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/progress.h"
+#include "driver/edit_groups.h"
 #include "driver/precompute_relight.h"
 #include "driver/stop.h"
 #include "precompute.h"
@@ -31,6 +32,15 @@ static const struct option_spec options[] = {
      .help = "edit: direct light only, by triangles of the sky"},
     {.name = "edit", .type = OPTION_TEXTS, .offset = AT(edit), .argument = "NAME",
      .help = "edit: make the material, or that of the shape, of this id editable, too"},
+    {.name = "bounces", .type = OPTION_INT, .offset = AT(bounces), .argument = "N", .min = 1,
+     .max = EDIT_MOST_BOUNCES, .def = "4",
+     .help = "edit: how often light scatters from materials that can be edited"},
+    {.name = "series", .type = OPTION_TEXT, .offset = AT(series), .argument = "J,J2,1,...",
+     .def = "64", .help = "edit: most bins of a curve where the eye sees it, at the second hop, ...;\n"
+     "1, where none is given: an albedo"},
+    {.name = "tail", .type = OPTION_TEXT, .offset = AT(tail), .argument = "NAME", .def = "frozen",
+     .help = "edit: light of more bounces meets the materials as they are (frozen),\n"
+     "or is left out (none)"},
     {.name = "lights", .type = OPTION_INT, .offset = AT(lights), .argument = "N", .min = 8,
      .max = 1000000, .def = "4000", .help = "edit: triangles of the sky; 400 for a preview"},
     {.name = "light-samples", .type = OPTION_INT, .offset = AT(light_samples), .argument = "N",
@@ -40,7 +50,8 @@ static const struct option_spec options[] = {
      .def = "auto", .choices = precompute_packets,
      .help = "edit: shadow rays of 16 pixels, or towards 16 lights, at once; auto: measured"},
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
-     .help = "samples per pixel; 0: what the scene asks for; edit: positions in a pixel, 0: 16",
+     .help = "samples per pixel; 0: what the scene asks for; edit --direct:\n"
+             "positions in a pixel, 0: 16",
      .def = "0"},
     {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
      .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
@@ -109,7 +120,8 @@ struct job_options precompute_job(const struct precompute_values *v,
                                   const struct scene_define *defines) {
     return (struct job_options){
         .scene = v->scene, .spp = v->spp, .receiver = v->receiver,
-        .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads,
+        .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth,
+        .seed = (uint32_t)v->seed, .threads = v->threads,
         .stop = stop_on_signals(),
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
                     .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],
@@ -159,13 +171,17 @@ const struct subcommand subcommand_precompute = {
                 .description = "precompute relight: how the picture of SCENE depends on its "
                                "lighting, with all bounces.\n`relume relight` then makes pictures "
                                "under other lighting at the speed of memory.\nprecompute edit: how "
-                               "it depends on its editable materials, under direct light;\n`relume "
-                               "edit` changes them.",
+                               "it depends on its editable materials, with all bounces or, --direct, "
+                               "under direct light;\n`relume edit` changes them. What the eye sees "
+                               "keeps its curves; other surfaces light it as Lambertian ones of the\n"
+                               "same albedo, unless --series leaves the second hop a coarser curve.",
                 .examples = "  relume precompute relight room.xml -o room.safetensors --basis lights "
                             "--spp 256\n"
                             "  relume precompute relight car.xml -o car.safetensors --basis "
                             "pixels:32x16 --dry-run\n"
                             "  relume precompute edit tea.xml -o tea.safetensors --direct --edit "
-                            "pot --lights 400\n"},
+                            "pot --lights 400\n"
+                            "  relume precompute edit room.xml -o room.safetensors --edit floor "
+                            "--series 64,8 --bounces 3\n"},
     .run = run,
 };

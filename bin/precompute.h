@@ -7,8 +7,8 @@
 
 struct precompute_values {
     struct receiver receiver;
-    const char *kind, *scene, *output, *basis, *integrator, *sampler;
-    int spp, size[2], crop[4], max_depth, seed, threads;
+    const char *kind, *scene, *output, *basis, *integrator, *sampler, *series, *tail;
+    int spp, size[2], crop[4], max_depth, seed, threads, bounces;
     int lights, light_samples, packets;
     double memory;
     bool half, dry_run, lenient, quiet, json, direct;
@@ -21,6 +21,8 @@ extern const char *const precompute_packets[]; // "auto", "pixels", "lights", NU
 struct job_options precompute_job(const struct precompute_values *v,
                                   const struct scene_define *defines);
 
-// The exit code.
+// The exit code. The first hands over to the second unless --direct was asked for.
 int precompute_edit_run(const struct precompute_values *v, const char *command,
                         const struct scene_define *defines);
+int precompute_polynomial_run(const struct precompute_values *v, const char *command,
+                              const struct scene_define *defines);

@@ -52,10 +52,8 @@ int precompute_edit_run(const struct precompute_values *v, const char *command,
                         const struct scene_define *defines) {
     struct progress progress;
     struct edit_report result;
-    if (!v->direct) {
-        log_error("precompute edit: expected --direct");
-        return EXIT_USAGE;
-    }
+    if (!v->direct)
+        return precompute_polynomial_run(v, command, defines);
     progress_begin(&progress, "precompute", v->quiet);
     const struct edit_options o = {
         .job = precompute_job(v, defines), .edit = v->edit.items, .edit_count = v->edit.count,

@@ -6,7 +6,7 @@
 #include "bsdf/bin_sampler.h"
 #include "math/quadrature.h"
 
-enum { NODES = 8, SAMPLES = 1 << 16, DIMENSIONS = 5 };
+enum { NODES = 8, SAMPLES = 1 << 16, SAMPLES_OF_TWO = 1 << 19, DIMENSIONS = 5 };
 
 static const struct basis *basis_of(const struct form *f, uint32_t term, enum form_slot_name slot) {
     const struct form_slot *s = &f->term[term].slots[slot];
@@ -73,7 +73,8 @@ static void point(uint32_t i, double u[DIMENSIONS]) {
     }
 }
 
-static void add_sample(const struct form *f, const struct bin_sampler *s, const double *u, double *e) {
+static void add_sample(const struct form *f, const struct bin_sampler *s, const double *u,
+                       double share, double *e) {
     const struct form_term *t = &f->term[0];
     const struct basis *a = basis_of(f, 0, SLOT_A), *b = basis_of(f, 0, SLOT_B);
     const double sine = sqrt(u[0]), phi = 2 * M_PI * u[1];
@@ -93,7 +94,7 @@ static void add_sample(const struct form *f, const struct bin_sampler *s, const 
         for (uint32_t l = 0; l < n; l++)
             for (uint32_t c = 0; c < CURVE_CHANNELS; c++)
                 e[(j[r] * count_of(b) + k[l]) * CURVE_CHANNELS + c] +=
-                    q[c] * x[r] * y[l] / (pdf * SAMPLES);
+                    q[c] * x[r] * y[l] / pdf * share;
 }
 
 void equivalent_albedo(const struct form *f, uint32_t term, double *e) {
@@ -107,10 +108,11 @@ void equivalent_albedo(const struct form *f, uint32_t term, double *e) {
     struct bin_sampler s;
     const struct form one = alone(f, term);
     bin_sampler_init(&s, &one, &arena);
-    for (uint32_t i = 0; i < SAMPLES; i++) {
+    const uint32_t samples = a && b ? SAMPLES_OF_TWO : SAMPLES;
+    for (uint32_t i = 0; i < samples; i++) {
         double u[DIMENSIONS];
         point(i, u);
-        add_sample(&one, &s, u, e);
+        add_sample(&one, &s, u, 1.0 / samples, e);
     }
     arena_finish(&arena);
 }

@@ -74,13 +74,15 @@ static void make_blocks(struct layout *l) {
     for (uint32_t i = 0; i < plan->count; i++)
         for (uint32_t t = 0; t < plan->objects[i].form->terms; t++) {
             struct tensor_block b;
+            if (l->seen->lists[i].count == 0) // it lights others only
+                continue;
             edit_plan_block(plan, i, t, &b);
             if (edit_term_has(&plan->objects[i].form->term[t], SLOT_O))
                 b.view = l->seen->lists[i].view;
             add_block(l, b, i, t);
         }
     l->objects[plan->count].places = 0;
-    if (l->p->groups.count > 1)
+    if (l->p->groups.count > 1 && l->seen->lists[plan->count].count > 0)
         add_block(l, (struct tensor_block){.object = "", .term = "fixed", .coefficients = 1},
                   plan->count, 0);
 }

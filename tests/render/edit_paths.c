@@ -87,7 +87,7 @@ static void same_paths(const struct polynomial_options *options) {
     CHECK(f && tensor_check_values(f));
     write_scene(after);
     edited_open(&e, &o, tensor_get(f));
-    edited_contract(&e, tensor_get(f), a);
+    edited_contract(&e, tensor_get(f), false, a);
     plain_trace(&e.p, &e.response, (uint32_t)o.job.spp, b);
     double worst = 0, size = 0;
     for (int i = 0; i < 3 * PLANE; i++) {

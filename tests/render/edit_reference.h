@@ -15,6 +15,7 @@ enum { MOST_PLACES = 4096, MOST_FACTORS = 4096 };
 struct edited {
     struct polynomial p;
     struct response response; // of the reference
+    bool flat;                // Lambertian where the eye sees it, too
     double (*weights)[3];     // by object and place: f_q c_A c_B
     uint32_t first[64];   // of an object in `weights`
     double (*factors)[3];
@@ -173,7 +174,7 @@ static inline const struct closure *reference_resolve(const struct response *sel
                                                 LOBE_GLOSSY | LOBE_REFLECTION);
     c->edited = e;
     c->object = (uint32_t)object;
-    c->inside = depth == 0 ? inside : NULL;
+    c->inside = depth == 0 && !e->flat ? inside : NULL;
     c->below = wo[2] < 0;
     c->coarse = depth > 0 && first_later && e->p.objects[object].second;
     if (c->below)
@@ -307,23 +308,28 @@ static inline void edited_close(struct edited *e) {
     polynomial_close(&e->p);
 }
 
-// The picture that a tensor says the edited scene has, [3][pixel].
-static inline void edited_contract(const struct edited *e, const struct tensor *t, double *frame) {
+// The picture that a tensor says the edited scene has, [3][pixel]; or half the difference of its two
+// estimates.
+static inline void edited_contract(const struct edited *e, const struct tensor *t, bool halves,
+                                   double *frame) {
     const uint32_t plane = t->width * t->height;
     for (uint32_t i = 0; i < 3 * plane; i++)
-        frame[i] = t->fixed ? (double)t->fixed[i] : 0;
+        frame[i] = t->fixed && !halves ? (double)t->fixed[i] : 0;
     uint32_t at = 0;
     for (uint32_t o = 0; o <= e->p.plan.count && at < t->block_count; o++) {
         const bool fixed = o == e->p.plan.count;
         const struct symbolic_object *object = fixed ? NULL : &e->p.objects[o];
         for (uint32_t term = 0; term < (fixed ? 1 : object->form->terms); term++) {
-            const struct tensor_block *b = &t->blocks[at++];
+            const struct tensor_block *b = &t->blocks[at];
+            if (strcmp(b->object, fixed ? "" : e->p.plan.objects[o].name) != 0)
+                continue; // never seen
+            at++;
             const uint32_t bins = b->coefficients / b->groups;
             for (uint64_t i = 0; i < b->pixel_count; i++)
                 for (uint32_t c = 0; c < b->coefficients; c++)
                     for (uint32_t k = 0; k < 3; k++) {
                         const uint64_t tile = i / TENSOR_LANES, lane = i % TENSOR_LANES;
-                        const float *v = b->values;
+                        const float *v = halves ? b->halves : b->values;
                         const double w =
                             fixed ? 1 : e->weights[e->first[o] + object->first[term] + c % bins][k];
                         frame[k * plane + b->pixels[i]] +=
