@@ -30,6 +30,8 @@ static const struct option_spec options[] = {
              "haar:WxH, daub4:WxH: wavelets over the cells"},
     {.name = "direct", .type = OPTION_FLAG, .offset = AT(direct),
      .help = "edit: direct light only, by triangles of the sky"},
+    {.name = "unshadowed", .type = OPTION_FLAG, .offset = AT(unshadowed),
+     .help = "edit: nothing hides the sky, to see what shadows do"},
     {.name = "edit", .type = OPTION_TEXTS, .offset = AT(edit), .argument = "NAME",
      .help = "edit: make the material, or that of the shape, of this id editable, too"},
     {.name = "bounces", .type = OPTION_INT, .offset = AT(bounces), .argument = "N", .min = 1,

@@ -11,7 +11,7 @@ struct precompute_values {
     int spp, size[2], crop[4], max_depth, seed, threads, bounces;
     int lights, light_samples, packets;
     double memory;
-    bool half, dry_run, lenient, quiet, json, direct;
+    bool half, dry_run, lenient, quiet, json, direct, unshadowed;
     struct option_list defines, edit;
 };
 

@@ -58,7 +58,7 @@ int precompute_edit_run(const struct precompute_values *v, const char *command,
     const struct edit_options o = {
         .job = precompute_job(v, defines), .edit = v->edit.items, .edit_count = v->edit.count,
         .lights = (uint32_t)v->lights, .light_samples = (uint32_t)v->light_samples,
-        .packets = precompute_packets[v->packets], .output = v->output,
+        .unshadowed = v->unshadowed, .packets = precompute_packets[v->packets], .output = v->output,
         .storage = v->half ? TENSOR_BF16 : TENSOR_F32, .most_memory = v->memory * 1e9,
         .dry_run = v->dry_run, .command = command, .version = RELUME_VERSION,
         .progress = v->quiet || v->dry_run ? NULL : show_progress, .user = &progress};

@@ -79,7 +79,7 @@ const struct param editable_params[] = {
      .help = "operators on the first term's f_B"},
     {"edited", PARAM_FILE, AT(edited), .unit = "", .optional = true,
      .help = "JSON file with edited curves and factors of all terms (edit --save-scene)"},
-    {"bins", PARAM_INT, AT(bins), .def = "256", .min = 2, .max = 4096, .unit = "",
+    {"bins", PARAM_INT, AT(bins), .def = "256", .min = 1, .max = 4096, .unit = "",
      .help = "coefficients of a curve that is generated; files keep their own bins"},
     {"bins_b", PARAM_INT, AT(bins_b), .def = "-1", .min = -1, .max = 4096, .unit = "",
      .help = "the same for f_B (-1: bins)"},
@@ -181,11 +181,14 @@ static bool is_constant(const struct form_curve *c) {
     return true;
 }
 
-// Coefficients of a curve that no file gives.
+// Coefficients of a curve that no file gives; hats have at least two.
 static uint32_t bins_of(const struct editable *e, uint32_t curve) {
+    int bins = e->bins;
     if (e->bins_constant > 1 && is_constant(&e->form.curve[curve]))
-        return (uint32_t)e->bins_constant;
-    return (uint32_t)(e->bins_b > 1 && is_second_curve(&e->form, curve) ? e->bins_b : e->bins);
+        bins = e->bins_constant;
+    else if (e->bins_b > 1 && is_second_curve(&e->form, curve))
+        bins = e->bins_b;
+    return (uint32_t)(bins < 2 && e->basis == BASIS_HAT ? 2 : bins);
 }
 
 static void tabulate(struct editable *e, struct curve *tables[FORM_CURVES], struct arena *arena) {

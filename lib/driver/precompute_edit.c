@@ -124,7 +124,7 @@ static void make_loop(struct precompute *p) {
     p->scene = light_loop_scene_create(&(struct light_loop_options){
         .world = t->world, .sensor = t->sensor, .filter = t->filter, .sampler = t->sampler,
         .seed = t->seed, .positions = t->spp, .lights = &p->lights,
-        .as_points = p->options->as_points, .tolerance = p->options->tolerance,
+        .unshadowed = p->options->unshadowed, .as_points = p->options->as_points, .tolerance = p->options->tolerance,
         .light_samples = (p->options->light_samples + 1) / 2 * 2, .objects = p->objects,
         .object_count = p->plan.count});
     p->noisy = light_loop_has_noise(p->scene);

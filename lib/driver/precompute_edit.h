@@ -17,6 +17,7 @@ struct edit_options {
     uint32_t light_samples;        // of other lights, and of everything fixed, at each position
     const char *packets;           // "auto", "pixels", "lights" (integrator/light_loop.h)
     double tolerance;              // of shares (curve/overlap.h)
+    bool unshadowed;               // nothing hides the sky, for comparison
     bool as_points;                // triangles count as points, for comparison
     const char *output;
     enum tensor_storage storage;

@@ -40,6 +40,7 @@ struct light_loop_options {
     const struct sampler_type *sampler;
     uint32_t seed, positions;
     const struct light_triangles *lights;
+    bool unshadowed; // nothing hides the triangles, for comparison
     bool as_points; // triangles count as points at their centres, for comparison
     double tolerance; // of shares (curve/overlap.h); 0: 1e-2
     uint32_t light_samples; // of the other lights at each position: even

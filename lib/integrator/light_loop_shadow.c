@@ -80,6 +80,13 @@ static uint64_t shadow_through(struct light_loop *l, size_t visit) {
     return traced;
 }
 
+static void arrive_everywhere(struct light_loop *l, size_t visit) {
+    const struct light_loop_options *o = &l->scene->options;
+    for (uint32_t m = l->visits[visit].position; m < o->lights->count; m += o->positions)
+        if (is_above(l, &l->visits[visit], m))
+            arrive(l, visit, m, spectrum_grey(1));
+}
+
 uint64_t light_loop_shadow(struct light_loop *l) {
     const struct light_loop_options *o = &l->scene->options;
     uint64_t traced = 0;
@@ -88,7 +95,9 @@ uint64_t light_loop_shadow(struct light_loop *l) {
         l->visits[i].count = 0;
     for (size_t i = 0; i < l->visit_count;) {
         uint32_t n = 1;
-        if (o->world->shadow_rays_may_pass) {
+        if (o->unshadowed) {
+            arrive_everywhere(l, i);
+        } else if (o->world->shadow_rays_may_pass) {
             traced += shadow_through(l, i);
         } else if (o->packets == PACKETS_OF_LIGHTS) {
             traced += shadow_lights(l, i);
