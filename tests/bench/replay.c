@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Products of tiles against the speed of memory: full products with 32 and 16 bits, an update of 30
-// terms, OpenCL and C, and plain reading, interleaved; medians.
+// terms, OpenCL and C, and plain reading, interleaved; medians. Then curve switching: either axis of
+// 128x128 coefficients contracted, for as many pixels as have the same bytes.
 //
 // usage: replay [PIXELS [COEFFICIENTS]]     (262144 and 256)
 #include "replay/replay.h"
@@ -12,6 +13,8 @@
 
 #include "base/mem.h"
 #include "base/thread.h"
+#include "replay/measure.h"
+#include "replay/tiles.h"
 
 enum { REPEATS = 11, TERMS = 30, KINDS = 2 };
 
@@ -19,14 +22,8 @@ struct measured {
     double times[REPEATS];
 };
 
-static int by_value(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
 static double median(struct measured *m) {
-    qsort(m->times, REPEATS, sizeof *m->times, by_value);
-    return m->times[REPEATS / 2];
+    return measure_median(m->times, REPEATS);
 }
 
 // Adds up memory, sixteen sums at a time.
@@ -80,7 +77,7 @@ static void make_tensors(struct bench *b, uint64_t pixels, uint32_t coefficients
         const size_t bytes = tensor_bytes(&b->block[s]);
         uint16_t *values = mem_array(bytes, 1);
         for (size_t i = 0; i < bytes / 2; i++)
-            values[i] = (uint16_t)(0x3f00 + (i * 2654435761u >> 24)); // about 0.5 to 2 as float too
+            values[i] = (uint16_t)(0x3f00 + ((uint32_t)i * 2654435761u >> 24)); // 0.5 to 2, as float too
         b->block[s].values = values;
         b->tensor[s] = (struct tensor){.width = (uint32_t)pixels, .height = 1, .block_count = 1,
                                        .blocks = &b->block[s]};
@@ -107,6 +104,61 @@ static double time_update(const struct bench *b, struct replay *r) {
     replay_update(r, 0, b->terms, b->weights, TERMS);
     replay_wait(r);
     return time_seconds() - start;
+}
+
+// ---- curve switching ------------------------------------------------------------------------
+
+enum { SIDE = 128 };
+
+// The map that keeps axis `kept` of a matrix and sums the other up.
+static void make_contraction(int kept, struct contraction *c) {
+    uint32_t *start = mem_array(SIDE + 1, sizeof *start), *index = mem_array(SIDE * SIDE, sizeof *index);
+    float *weight = mem_array(3 * SIDE * SIDE, sizeof *weight);
+    for (uint32_t r = 0; r < SIDE; r++) {
+        start[r + 1] = (r + 1) * SIDE;
+        for (uint32_t k = 0; k < SIDE; k++)
+            index[r * SIDE + k] = kept == 0 ? r * SIDE + k : k * SIDE + r;
+    }
+    for (uint32_t i = 0; i < 3 * SIDE * SIDE; i++)
+        weight[i] = 1 / (float)(i % SIDE + 1);
+    *c = (struct contraction){SIDE, start, index, weight};
+}
+
+// Takes the values of a tensor as those of a smaller one with matrices.
+static void time_switching(const struct bench *b, double limit) {
+    const uint64_t pixels = b->block[TENSOR_F32].pixel_count * b->block[TENSOR_F32].coefficients /
+                            (SIDE * SIDE) / TENSOR_LANES * TENSOR_LANES;
+    struct tensor_block block = b->block[TENSOR_F32];
+    block.pixel_count = pixels;
+    block.coefficients = SIDE * SIDE;
+    block.axis_count = 2;
+    block.axes[0].bins = block.axes[1].bins = SIDE;
+    const struct tensor t = {(uint32_t)pixels, 1, NULL, 1, &block, NULL};
+    const double gb = (double)tensor_bytes(&block) * 1e-9;
+    float *out = mem_array(tensor_tiles(&block) * SIDE * 3 * TENSOR_LANES, sizeof *out);
+    for (int k = 0; k < 2; k++) {
+        struct replay *r = replay_create(&t, &(struct replay_options){.no_device = k == 1});
+        for (int kept = 0; kept < 2; kept++) {
+            struct contraction c;
+            struct measured m;
+            make_contraction(kept, &c);
+            for (int i = -1; i < REPEATS; i++) {
+                const double start = time_seconds();
+                replay_contract(r, 0, &c, out);
+                if (i >= 0)
+                    m.times[i] = time_seconds() - start;
+            }
+            const double s = median(&m);
+            printf("%-12.12s curve switching, %d x %d coefficients, keeping axis %d: %.1f ms for %llu "
+                   "pixels, %.1f GB/s = %.2f of reading\n", replay_device(r), SIDE, SIDE, kept, s * 1e3,
+                   (unsigned long long)pixels, gb / s, gb / s / limit);
+            mem_free((void *)(uintptr_t)c.start);
+            mem_free((void *)(uintptr_t)c.index);
+            mem_free((void *)(uintptr_t)c.weight);
+        }
+        replay_destroy(r);
+    }
+    mem_free(out);
 }
 
 int main(int argc, char **argv) {
@@ -137,6 +189,7 @@ int main(int argc, char **argv) {
                    "%.1f times faster\n", replay_device(b.replay[s][k]), s == TENSOR_F32 ? 32 : 16,
                    p * 1e3, gb / p, gb / p / ((double)bytes * 1e-9 / limit), TERMS, u * 1e3, p / u);
         }
+    time_switching(&b, (double)bytes * 1e-9 / limit);
     for (int s = 0; s < KINDS; s++)
         for (int k = 0; k < 2; k++)
             replay_destroy(b.replay[s][k]);
