@@ -133,7 +133,7 @@ bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const ch
 static bool stays(const struct edit *e, uint32_t block) {
     const struct tensor_block *b = &e->objects.tensor->blocks[block];
     return b->groups == 1 && e->objects.groups[0].count == 0 && e->focus.power_count == 1 &&
-           edit_focus_coefficients(&e->focus, &e->objects, block) == b->coefficients;
+           edit_focus_axes(&e->focus, &e->objects, block) == (1u << b->axis_count) - 1;
 }
 
 static bool contract_block(struct edit *e, uint32_t block, struct tensor_block *out) {

@@ -73,7 +73,8 @@ static void all_ways_agree(const struct sample_options *o, const char *what) {
                 change(e[w], &same);
             if (i % 7 == 6)
                 change(e[w], &same); // two changes: no focus, or the same one
-            CHECK(edit_frame(e[w], frame[w]) && edit_is_exact(e[w]));
+            CHECK((ways[w].terms ? edit_settle(e[w], frame[w]) : edit_frame(e[w], frame[w])) &&
+                  edit_is_exact(e[w]));
             worst = fmax(worst, distance(e[w], frame[w]));
         }
         different += memcmp(frame[0], frame[1], sizeof frame[0]) != 0;
@@ -220,6 +221,8 @@ int main(void) {
     all_ways_agree(&(struct sample_options){.storage = TENSOR_F32}, "linear");
     all_ways_agree(&(struct sample_options){.storage = TENSOR_BF16}, "linear, 16 bits");
     all_ways_agree(&(struct sample_options){.polynomial = true}, "polynomial");
+    all_ways_agree(&(struct sample_options){.bins = 1}, "a bin a curve");
+    all_ways_agree(&(struct sample_options){.bins = 4096}, "4096 bins");
     black_comes_back();
     freezing_leaves_little();
     updates_follow();
