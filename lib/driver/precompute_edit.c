@@ -34,7 +34,6 @@ struct precompute {
     int threads;
     struct tensor tensor;
     struct tensor_writer *writer; // NULL: a trial, nothing is kept
-    uint32_t (*terms)[2];         // object and term of each block
     uint32_t *first_block;        // by object
     bool noisy;
     const uint32_t *regions;      // that are worked on
@@ -138,8 +137,7 @@ static void add_block(struct precompute *p, uint32_t object, uint32_t term) {
     const struct edit_pixels_list *list = &p->pixels.lists[object];
     const struct form *f = p->plan.objects[object].form;
     float *weights;
-    p->terms[p->tensor.block_count][0] = object;
-    p->terms[p->tensor.block_count++][1] = term;
+    p->tensor.block_count++;
     edit_plan_block(&p->plan, object, term, b);
     b->pixel_count = list->count;
     b->pixels = list->pixels;
@@ -158,7 +156,6 @@ static void make_blocks(struct precompute *p) {
     p->tensor = (struct tensor){.width = (uint32_t)f->width, .height = (uint32_t)f->height,
                                 .fixed = &some};
     p->tensor.blocks = mem_array((size_t)p->plan.count * FORM_TERMS, sizeof *p->tensor.blocks);
-    p->terms = mem_array((size_t)p->plan.count * FORM_TERMS, sizeof *p->terms);
     p->first_block = mem_array(p->plan.count, sizeof *p->first_block);
     for (uint32_t i = 0; i < p->plan.count; i++) {
         p->first_block[i] = p->tensor.block_count;
@@ -478,7 +475,6 @@ static void finish(struct precompute *p) {
     }
     mem_free(p->workers);
     mem_free(p->tensor.blocks);
-    mem_free(p->terms);
     mem_free(p->first_block);
     mem_free(p->objects);
     edit_pixels_finish(&p->pixels);
