@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "bsdf/diffuse.h"
 #include "bsdf/editable_data.h"
 
 // ---- the scene --------------------------------------------------------------------------------
@@ -50,6 +51,27 @@ static const struct object *editable_of(const struct object *bsdf, bool *two_sid
     return inside->type == &bsdf_editable.entry && !other ? inside : NULL;
 }
 
+// A Lambertian material of albedo 1, as what is editable answers at later hops.
+static struct object *make_white(struct arena *arena, bool two_sided) {
+    struct object *o = arena_alloc(arena, sizeof *o), *front = arena_alloc(arena, sizeof *front);
+    struct diffuse *d = arena_alloc(arena, sizeof *d);
+    d->reflectance.value = spectrum_grey(1);
+    *front = (struct object){.type = &bsdf_diffuse.entry, .data = d};
+    if (!two_sided)
+        return front;
+    *o = (struct object){.type = &bsdf_twosided.entry,
+                         .data = arena_alloc(arena, bsdf_twosided.entry.size)};
+    memcpy((char *)o->data + param_find(o->type, "front")->offset, &front, sizeof front);
+    return o;
+}
+
+static void shade_white_wide(struct polynomial *p, const int *object, const bool *two_sided) {
+    const struct object *white[2] = {make_white(&p->arena, false), make_white(&p->arena, true)};
+    for (uint32_t i = 0; i < p->job.scene->shape_count; i++)
+        if (object[i] != CHAIN_FIXED)
+            world_shade_wide(p->job.world, i, white[two_sided[i]]);
+}
+
 static void find_objects(struct polynomial *p) {
     const struct scene *s = p->job.scene;
     int *object = arena_alloc(&p->arena, (s->shape_count + 1) * sizeof *object);
@@ -58,6 +80,7 @@ static void find_objects(struct polynomial *p) {
         const struct object *material = editable_of(s->shapes[i].bsdf, &two_sided[i]);
         object[i] = material ? (int)edit_plan_find(&p->plan, material->data) : CHAIN_FIXED;
     }
+    shade_white_wide(p, object, two_sided);
     p->response.object_of_shape = object;
     p->response.two_sided = two_sided;
 }

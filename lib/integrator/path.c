@@ -277,7 +277,7 @@ static void shade_all(const struct path *p, struct trace_context *ctx, struct wa
         if (hits[i].shape == SCENE_NONE)
             leave_scene(p, ctx, i, l);
         else
-            add_lane(&kinds, path_wide_kind(ctx, l, &hits[i]), i);
+            add_lane(&kinds, path_wide_kind(ctx, i, l, &hits[i]), i);
     }
     for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
         shade_kind(p, ctx, w, hits, kind, &kinds);

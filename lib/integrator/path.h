@@ -49,12 +49,15 @@ static inline bool path_may_contribute(const struct path *p, uint32_t edges) {
 }
 
 // The kind of material by which path_shade_wide can shade a hit; 0: it cannot.
-static inline uint32_t path_wide_kind(const struct trace_context *ctx, const struct lane *l,
-                                      const struct accel_hit *hit) {
-    const bool physical = ctx->response == &response_physical;
-    return physical && (l->first_done || !ctx->sink->wants_surface)
-               ? ctx->world->shapes[hit->shape].wide_kind
-               : 0;
+static inline uint32_t path_wide_kind(const struct trace_context *ctx, int lane,
+                                      const struct lane *l, const struct accel_hit *hit) {
+    const struct response *r = ctx->response;
+    const uint32_t kind = ctx->world->shapes[hit->shape].wide_kind;
+    if (!kind || (!l->first_done && ctx->sink->wants_surface))
+        return 0;
+    if (r == &response_physical)
+        return kind;
+    return r->is_wide && r->is_wide(r, ctx, lane, l->from.depth, hit->shape) ? kind : 0;
 }
 
 // One vertex of a packet's lanes, whose materials are of one kind: the same as one by one, with the

@@ -247,6 +247,14 @@ static uint32_t look(const struct path *p, const struct vertices *v, struct wide
     return goes_on;
 }
 
+// For a response that keeps account of the path.
+static void note_vertices(struct trace_context *ctx, const struct vertices *v,
+                          const struct packet *packet) {
+    for (int i = 0; i < packet->count; i++)
+        ctx->response->note(ctx->response, ctx, packet->lanes[i], v->lane[i]->from.depth,
+                            v->hit[i]->shape);
+}
+
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
                      const struct packet *packet, const struct accel_hit *hits) {
     struct vertices v;
@@ -259,6 +267,8 @@ void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lan
     gather_materials(ctx->world, &v, &points);
     world_surfaces(ctx->world, v.hit, &at.s);
     add_emission(ctx, p, &v, packet, &at.s);
+    if (ctx->response->note)
+        note_vertices(ctx, &v, packet);
     const struct wide3 back = {-v.d.x, -v.d.y, -v.d.z};
     const uint32_t goes_on = look(p, &v, back, &at);
     if (goes_on) {

@@ -7,4 +7,4 @@ static const struct closure *resolve(const struct response *self, const struct t
     return bsdf_resolve(s->bsdf, &s->point, wo, ctx->stack);
 }
 
-const struct response response_physical = {resolve};
+const struct response response_physical = {.resolve = resolve};

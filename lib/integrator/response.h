@@ -14,6 +14,13 @@ struct response {
     // scattering events of the lane's path before this one.
     const struct closure *(*resolve)(const struct response *self, const struct trace_context *ctx,
                                      int lane, uint32_t depth, const struct surface *s, vec3 wo);
+    // Whether the material by which the world shades a shape's points together
+    // (world_shape.wide_kind) is the answer there. NULL: never.
+    bool (*is_wide)(const struct response *self, const struct trace_context *ctx, int lane,
+                    uint32_t depth, uint32_t shape);
+    // Takes note of a vertex that is shaded so, in place of resolve. NULL: nothing to note.
+    void (*note)(const struct response *self, const struct trace_context *ctx, int lane,
+                 uint32_t depth, uint32_t shape);
 };
 
 extern const struct response response_physical;

@@ -142,9 +142,36 @@ static const struct closure *resolve_white(vec3 wo, struct closure_stack *stack)
 
 // ---- the response ---------------------------------------------------------------------------
 
-static void take_steps(const struct symbolic *self, struct marks *m, uint32_t object) {
+// Whether a later hop of an object has a basis of its own.
+static bool is_second(const struct symbolic *self, const struct chain *chain, int object) {
+    return self->objects[object].second && chain->later[CHAIN_PATH].mark[0].index == 0;
+}
+
+// Meets an object's albedo.
+static void take_step(const struct symbolic *self, struct chain *chain, int object) {
+    struct marks *m = &chain->later[CHAIN_PATH];
     for (uint32_t i = 0; i < m->count; i++)
-        m->mark[i].index = self->next[m->mark[i].index * self->object_count + object];
+        m->mark[i].index = self->next[m->mark[i].index * self->object_count + (uint32_t)object];
+}
+
+static bool is_wide(const struct response *response, const struct trace_context *ctx, int lane,
+                    uint32_t depth, uint32_t shape) {
+    const struct symbolic *self = (const void *)response;
+    const int object = self->object_of_shape[shape];
+    if (self->survey)
+        return false;
+    return object == CHAIN_FIXED || (depth > 0 && depth < self->bounces &&
+                                     !is_second(self, &ctx->sink->chains[lane], object));
+}
+
+static void note(const struct response *response, const struct trace_context *ctx, int lane,
+                 uint32_t depth, uint32_t shape) {
+    const struct symbolic *self = (const void *)response;
+    struct chain *chain = &ctx->sink->chains[lane];
+    (void)depth;
+    chain->first_of_light = chain->later_of_light = CHAIN_PATH;
+    if (self->object_of_shape[shape] != CHAIN_FIXED)
+        take_step(self, chain, self->object_of_shape[shape]);
 }
 
 // A surface met after others.
@@ -152,12 +179,11 @@ static const struct closure *resolve_later(const struct symbolic *self, struct c
                                            int object, const struct surface *s, vec3 wo,
                                            struct closure_stack *stack) {
     const struct symbolic_object *o = &self->objects[object];
-    const bool second = o->second && chain->later[CHAIN_PATH].mark[0].index == 0;
-    if (second) {
+    if (is_second(self, chain, object)) {
         chain->later_of_light = CHAIN_LIGHT;
         return resolve_basis(o, chain->later, o->second, s, wo, stack);
     }
-    take_steps(self, &chain->later[CHAIN_PATH], (uint32_t)object);
+    take_step(self, chain, object);
     return resolve_white(wo, stack);
 }
 
@@ -186,7 +212,7 @@ static const struct closure *resolve(const struct response *response,
 }
 
 void symbolic_init(struct symbolic *s) {
-    s->response = (struct response){resolve};
+    s->response = (struct response){resolve, is_wide, note};
 }
 
 void symbolic_object_init(struct symbolic_object *o, const struct form *form, struct arena *arena) {

@@ -60,19 +60,22 @@ static uint32_t index_of_kind(struct world *w, const struct wide_bsdf *kind) {
     return k;
 }
 
-static void find_wide_materials(struct world *w, const struct scene *s) {
+void world_shade_wide(struct world *w, uint32_t index, const struct object *bsdf) {
+    struct world_shape *shape = &w->shapes[index];
     struct wide_material m;
+    if (w->tangents_matter || shape->kind != SHAPE_MESH ||
+        w->scene->shapes[index].group != SCENE_NONE || !bsdf_wide(bsdf, &m))
+        return;
+    shape->wide_kind = (uint8_t)index_of_kind(w, m.kind);
+    shape->wide_data = m.data;
+    shape->two_sided = m.two_sided;
+    shape->textured = m.textured;
+}
+
+static void find_wide_materials(struct world *w, const struct scene *s) {
     w->wide_kind_count = 1;
-    for (uint32_t i = 0; i < s->shape_count; i++) {
-        struct world_shape *shape = &w->shapes[i];
-        if (w->tangents_matter || shape->kind != SHAPE_MESH || s->shapes[i].group != SCENE_NONE ||
-            !bsdf_wide(shape->bsdf, &m))
-            continue;
-        shape->wide_kind = (uint8_t)index_of_kind(w, m.kind);
-        shape->wide_data = m.data;
-        shape->two_sided = m.two_sided;
-        shape->textured = m.textured;
-    }
+    for (uint32_t i = 0; i < s->shape_count; i++)
+        world_shade_wide(w, i, w->shapes[i].bsdf);
 }
 
 static bool prepare_lights(struct world *w, struct scene *s) {

@@ -68,6 +68,10 @@ struct world {
 struct world *world_create(struct scene *scene, int threads);
 void world_destroy(struct world *w);
 
+// Has a shape's points shaded together by this material, where they can be: its own, or that of a
+// response which answers so (integrator/response.h).
+void world_shade_wide(struct world *w, uint32_t shape, const struct object *bsdf);
+
 // Chooses lights in another way than world_create did (LIGHT_CHOICE_AUTO).
 void world_choose_lights(struct world *w, enum light_choice_mode mode);
 

@@ -265,10 +265,12 @@ static inline void plain_trace(const struct polynomial *p, const struct response
     struct plain_sink sink = {.grid = tile_grid_over((struct sink_area){f->x0, f->y0, f->x1, f->y1}),
                               .width = p->job.scene->film.width,
                               .height = p->job.scene->film.height, .frame = frame};
+    // Asked at every vertex: the world shades what is editable as white where it shades together.
+    const struct response whole = {.resolve = response_physical.resolve};
     struct tracer_options o = p->tracer;
     o.threads = 1;
     o.spp = samples;
-    o.response = response ? response : &response_physical;
+    o.response = response ? response : &whole;
     const int values = 3 * sink.width * sink.height;
     for (int i = 0; i < values; i++)
         frame[i] = 0;
