@@ -181,9 +181,9 @@ const struct subcommand subcommand_precompute = {
                             "--spp 256\n"
                             "  relume precompute relight car.xml -o car.safetensors --basis "
                             "pixels:32x16 --dry-run\n"
-                            "  relume precompute edit tea.xml -o tea.safetensors --direct --edit "
-                            "pot --lights 400\n"
-                            "  relume precompute edit room.xml -o room.safetensors --edit floor "
+                            "  relume precompute edit room.xml -o sun.safetensors --direct --edit "
+                            "floor --lights 400\n"
+                            "  relume precompute edit room.xml -o floor.safetensors --edit floor "
                             "--series 64,8 --bounces 3\n"},
     .run = run,
 };

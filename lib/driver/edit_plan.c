@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "bsdf/editable_convert.h"
+#include "bsdf/editable_data.h"
 #include "curve/form_json.h"
 #include "curve/parameters.h"
 
@@ -63,7 +64,7 @@ static bool unknown(struct scene *s, const char *name) {
     return false;
 }
 
-bool edit_convert(struct scene *s, const char *const *names, size_t count) {
+bool edit_convert(struct scene *s, const char *const *names, size_t count, int bins_b) {
     for (size_t i = 0; i < count; i++) {
         struct leaves l = {.count = 0};
         struct object *o = find_material(s, names[i]);
@@ -73,8 +74,11 @@ bool edit_convert(struct scene *s, const char *const *names, size_t count) {
         for (uint32_t k = 0; k < l.count; k++) {
             if (!l.material[k]->id)
                 l.material[k]->id = l.name[k]; // the object's name is the one that was asked for
+            const bool plain = l.material[k]->type != &bsdf_editable.entry;
             if (!editable_convert(l.material[k], &s->arena))
                 return false;
+            if (plain && bins_b > 0)
+                ((struct editable *)l.material[k]->data)->bins_b = bins_b;
         }
     }
     return true;

@@ -27,8 +27,9 @@ struct edit_plan {
 };
 
 // Turns the materials of `names` (ids of materials or shapes) into editable ones; before the world
-// is built. false after an error message.
-bool edit_convert(struct scene *s, const char *const *names, size_t count);
+// is built. Those that become so get `bins_b` bins for a second curve; 0: as many as for the first.
+// false after an error message.
+bool edit_convert(struct scene *s, const char *const *names, size_t count, int bins_b);
 
 // The objects of a scene whose materials are prepared. false after an error message: there is none.
 bool edit_plan_init(struct edit_plan *p, const struct scene *s);

@@ -32,7 +32,7 @@ struct edit_request {
 static void edit_scene(struct scene *s, void *user) {
     struct edit_request *r = user;
     const struct polynomial_options *o = r->options;
-    r->done = edit_convert(s, o->edit, o->edit_count);
+    r->done = edit_convert(s, o->edit, o->edit_count, 0);
     for (uint32_t i = 0; i < s->bsdf_count; i++)
         limit_bins(s->bsdfs[i], o->series[0]);
 }

@@ -9,7 +9,6 @@
 
 #include "base/log.h"
 #include "base/thread.h"
-#include "bsdf/editable_data.h"
 #include "driver/edit_pixels.h"
 
 enum { DEFAULT_POSITIONS = 16, TRIAL_REGIONS = 6, DRY_REGIONS = 24 };
@@ -52,26 +51,13 @@ struct conversion {
 // Coefficients are the product of both curves' bins, and a second one, Fresnel's, is smooth.
 enum { CONVERTED_BINS_B = 32 };
 
-// Makes the materials of --edit editable; those that the scene has so keep their bins.
-static bool convert(struct scene *s, const struct edit_options *o) {
-    bool *had = mem_array(s->bsdf_count, sizeof *had);
-    for (uint32_t i = 0; i < s->bsdf_count; i++)
-        had[i] = s->bsdfs[i]->type == &bsdf_editable.entry;
-    const bool good = edit_convert(s, o->edit, o->edit_count);
-    for (uint32_t i = 0; i < s->bsdf_count; i++)
-        if (!had[i] && s->bsdfs[i]->type == &bsdf_editable.entry)
-            ((struct editable *)s->bsdfs[i]->data)->bins_b = CONVERTED_BINS_B;
-    mem_free(had);
-    return good;
-}
-
 static void edit_scene(struct scene *s, void *user) {
     struct conversion *c = user;
     const struct param *samples = param_find(s->integrator->type, "shading_samples");
     const int count = (int)c->options->light_samples;
     if (samples)
         memcpy((char *)s->integrator->data + samples->offset, &count, sizeof count);
-    c->failed = !convert(s, c->options);
+    c->failed = !edit_convert(s, c->options->edit, c->options->edit_count, CONVERTED_BINS_B);
 }
 
 static bool open_scene(struct precompute *p) {

@@ -71,7 +71,7 @@ static void convert(struct scene *s, void *user) {
     for (uint32_t i = 0; i < c->objects->object_count && !c->failed; i++) {
         const char *name = c->objects->objects[i].name;
         if (strncmp(name, "object ", 7) != 0)
-            c->failed = !edit_convert(s, &name, 1);
+            c->failed = !edit_convert(s, &name, 1, 0);
     }
 }
 

@@ -4,7 +4,7 @@
 #
 # usage: edit.sh RELUME
 set -u
-relume=$1
+relume=$(realpath "$1")
 # shellcheck source=tests/tool/pictures.sh
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 

@@ -27,7 +27,7 @@ static void names_objects_and_blocks(void) {
     static const char *const names[] = {"coated", "ball"};
     struct scene *s = scene_parse(BODY);
     struct edit_plan p;
-    CHECK(s && edit_convert(s, names, 2));
+    CHECK(s && edit_convert(s, names, 2, 0));
     struct world *w = world_create(s, 1);
     CHECK(w && edit_plan_init(&p, s));
     CHECK(p.count == 3);
@@ -54,7 +54,7 @@ static void names_objects_and_blocks(void) {
 static void sees_through_wrappers(void) {
     static const char *const names[] = {"coated"};
     struct scene *s = scene_parse(BODY);
-    CHECK(s && edit_convert(s, names, 1));
+    CHECK(s && edit_convert(s, names, 1, 0));
     struct world *w = world_create(s, 1);
     struct closure_stack stack;
     for (int shape = 1; shape < 4; shape += 2)
@@ -81,10 +81,10 @@ static void refuses_what_has_no_form(void) {
     static const char *const glass[] = {"plain"}, *const nobody[] = {"nobody"};
     struct scene *s = scene_parse(BODY);
     capture_begin();
-    CHECK(!edit_convert(s, glass, 1));
+    CHECK(!edit_convert(s, glass, 1, 0));
     CHECK(strstr(capture_end(), "dielectric has no editable form"));
     capture_begin();
-    CHECK(!edit_convert(s, nobody, 1));
+    CHECK(!edit_convert(s, nobody, 1, 0));
     CHECK(strstr(capture_end(), "no material or shape of that id"));
     scene_destroy(s);
 }
@@ -121,7 +121,7 @@ static void keeps_the_look(void) {
             struct scene *s = scene_parse(body);
             struct closure_stack stack = {0};
             capture_begin();
-            CHECK(!editable || edit_convert(s, name, 1));
+            CHECK(!editable || edit_convert(s, name, 1, 0));
             capture_end();
             struct world *w = world_create(s, 1);
             const struct closure *c = bsdf_resolve(s->shapes[0].bsdf, &point, wo, &stack);
