@@ -8,7 +8,7 @@
 //
 // The file is a safetensors container: u64 length of the header, little-endian; the header, JSON,
 // padded with spaces so that the data begin at a multiple of 128; then the arrays, each aligned to
-// 128 bytes. Arrays of block N:
+// 128 bytes; the bytes between are arrays "padding.OFFSET". Arrays of block N:
 //
 //     N.pixels   U32 [n]             index y * width + x of each pixel, all different
 //     N.values   F32 or BF16 [tiles, coefficients, channels, 64]   mean of the two half-sums

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -25,11 +26,25 @@ struct tensor_writer {
 
 // ---- header -------------------------------------------------------------------------------------
 
+// Other readers of such files refuse bytes that belong to no array.
+static void add_padding(struct json *header, uint64_t from, uint64_t to) {
+    char name[64];
+    snprintf(name, sizeof name, "padding.%" PRIu64, from);
+    struct json *entry = json_add_object(header, name);
+    json_add_text(entry, "dtype", "U8");
+    json_append_count(json_add_array(entry, "shape"), (int64_t)(to - from));
+    struct json *offsets = json_add_array(entry, "data_offsets");
+    json_append_count(offsets, (int64_t)from);
+    json_append_count(offsets, (int64_t)to);
+}
+
 // Adds an array behind the others and returns where it begins.
 static uint64_t add_array(struct json *header, const char *name, const char *dtype, size_t item,
                           const uint64_t *shape, int rank, uint64_t *end) {
-    struct json *entry = json_add_object(header, name);
     const uint64_t begin = (*end + TENSOR_ALIGN - 1) / TENSOR_ALIGN * TENSOR_ALIGN;
+    if (begin > *end)
+        add_padding(header, *end, begin);
+    struct json *entry = json_add_object(header, name);
     uint64_t bytes = item;
     json_add_text(entry, "dtype", dtype);
     struct json *sizes = json_add_array(entry, "shape");
