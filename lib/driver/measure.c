@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "base/log.h"
 #include "base/mem.h"
 #include "sink/sums.h"
 
@@ -14,6 +15,15 @@ struct measure {
     struct object sensor;
     struct meters meters;
 };
+
+// The pixels of a point are its replicates, and must not know of each other.
+static void untie_pixels(struct tracer_options *o) {
+    if (!o->sampler->ties_pixels)
+        return;
+    log_warn("sampler %s ties neighbouring pixels together, which here are the repeats that errors "
+             "come from: sobol is taken", o->sampler->entry.name);
+    o->sampler = &sampler_sobol;
+}
 
 struct measure *measure_create(const struct job *job, const struct measure_options *options) {
     const struct scene *s = job->scene;
@@ -32,6 +42,7 @@ struct measure *measure_create(const struct job *job, const struct measure_optio
         m->points.centre[i] = s->centre[i];
     m->sensor = (struct object){&type->entry, &m->points, NULL, {0}};
     m->tracer = job->render.tracer;
+    untie_pixels(&m->tracer);
     m->tracer.sensor = &m->sensor;
     m->tracer.filter = &filter_sampler_box;
     m->tracer.spp = m->most;

@@ -38,6 +38,7 @@ struct sampler_type {
     // next_2d of each lane for the dimension given; u[0] is also next_1d. NULL: one by one.
     void (*draw_wide)(const struct sampler_lanes *s, wide_uint dimension, wide u[2]);
     bool independent; // points are independent: the running variance is a true error estimate
+    bool ties_pixels; // the points of neighbouring pixels are laid out together
 };
 
 // Instance data of every sampler, and the parameters all of them take.

@@ -83,5 +83,5 @@ const struct sampler_type sampler_zsobol = {
     .entry = {.name = "zsobol", .help = "Sobol points whose error is blue noise over the picture "
                                         "(Ahmed and Wonka 2020)",
               .params = params, .size = sizeof(struct sampler_settings)},
-    .next_1d = next_1d, .next_2d = next_2d, .counted = true,
+    .next_1d = next_1d, .next_2d = next_2d, .counted = true, .ties_pixels = true,
 };
