@@ -74,7 +74,7 @@ static inline struct scene *scene_parse(const char *body) {
 }
 
 // A parameter of an object, as the type says.
-#define PARAM(type, object, name) (*(const type *)param_place((object), (name)))
+#define PARAM(type, object, name) (*(type const *)param_place((object), (name)))
 
 static inline const void *param_place(const struct object *o, const char *name) {
     const struct param *p = param_find(o->type, name);

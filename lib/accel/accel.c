@@ -29,6 +29,7 @@ struct accel {
     RTCScene world;
     RTCScene *groups; // one per shapegroup
     uint32_t group_count, shape_count;
+    bool has_instances;
     struct placed_quadric *quadrics; // by shape index; NULL: the scene has none
     struct few *few;                 // NULL: the scene is too large for it
     atomic_llong bytes;
@@ -197,6 +198,7 @@ struct accel *accel_create(const struct scene *scene, int threads) {
     rtcSetDeviceErrorFunction(a->device, report_embree, NULL);
     rtcSetDeviceMemoryMonitorFunction(a->device, count_bytes, a);
     a->shape_count = scene->shape_count;
+    a->has_instances = scene->instance_count > 0;
     a->world = new_scene(a);
     a->groups = mem_array(scene->group_count, sizeof *a->groups);
     for (; a->group_count < scene->group_count; a->group_count++)
@@ -369,6 +371,7 @@ uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PAC
     _Alignas(64) int valid[ACCEL_PACKET];
     struct RTCRay16 p;
     packet_from(rays, active, valid, &p);
+    coherent = coherent && !a->has_instances; // Embree 3.13.5 may loop forever in an instance
 #if EMBREE_4
     struct RTCOccludedArguments args;
     rtcInitOccludedArguments(&args);

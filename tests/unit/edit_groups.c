@@ -21,12 +21,11 @@ static void groups_are_multisets(uint32_t objects, uint32_t bounces) {
     CHECK(edit_groups_init(&g, &plan, series, bounces));
     CHECK(g.count == choose(bounces - 1 + objects, objects));
     CHECK(g.count == edit_groups_count(objects, bounces, 0));
-    uint32_t wrong = 0, longest = 0, total = 0;
+    uint32_t wrong = 0, longest = 0;
     for (uint32_t i = 0; i < g.count; i++) {
         uint32_t list[EDIT_MOST_BOUNCES], next[EDIT_MOST_BOUNCES];
         const uint32_t n = edit_group_factors(&g, i, list);
         longest = n > longest ? n : longest;
-        total += n;
         for (uint32_t k = 1; k < n; k++)
             wrong += list[k] < list[k - 1];
         for (uint32_t o = 0; o < objects; o++) {
