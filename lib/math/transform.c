@@ -163,6 +163,19 @@ bool transform_is_finite(const struct transform *a) {
     return true;
 }
 
+bool transform_make_affine(struct transform *a) {
+    const double w = a->m[3][3];
+    for (int j = 0; j < 3; j++)
+        if (!(fabs(a->m[3][j]) <= 1e-6 * fabs(w)))
+            return false;
+    if (w == 0)
+        return false;
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            a->m[i][j] = i < 3 ? a->m[i][j] / w : j == 3;
+    return true;
+}
+
 struct affine affine_from(const struct transform *t) {
     const double(*a)[4] = t->m;
     return (struct affine){

@@ -28,6 +28,9 @@ void transform_vector(const struct transform *a, const double v[3], double w[3])
 void transform_normal(const struct transform *inverse, const double n[3], double m[3]);
 bool transform_is_identity(const struct transform *a);
 bool transform_is_finite(const struct transform *a);
+// Divides by the last element and clears what exporters' rounding leaves in the last row. false: it
+// is projective, which would bend lines; no shape and no camera here can do that.
+bool transform_make_affine(struct transform *a);
 
 // Single-precision affine copy for the inner loop.
 struct affine {

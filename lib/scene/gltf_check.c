@@ -152,6 +152,10 @@ static bool check_node(struct gltf *g, size_t i) {
         return gltf_fail(g, arena_printf(g->arena, "%s/weights", at),
                          "has %zu weights for %zu morph targets", json_count(weights),
                          json_count(targets));
+    double m[16]; // by columns
+    if (gltf_numbers(node, "matrix", 16, m) && (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1))
+        return gltf_fail(g, arena_printf(g->arena, "%s/matrix", at),
+                         "has %g %g %g %g as its last row, expected 0 0 0 1", m[3], m[7], m[11], m[15]);
     return true;
 }
 

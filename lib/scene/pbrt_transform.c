@@ -59,24 +59,26 @@ static bool do_look_at(struct pbrt *p, struct where at) {
 }
 
 // Sixteen numbers, by columns.
-static bool read_matrix(struct pbrt *p, const char *what, struct transform *t) {
+static bool read_matrix(struct pbrt *p, struct where at, const char *what, struct transform *t) {
     double v[16];
     if (!pbrt_read_numbers(p, what, 16, v))
         return false;
     for (int i = 0; i < 16; i++)
         t->m[i % 4][i / 4] = v[i];
-    return true;
+    if (transform_make_affine(t))
+        return true;
+    log_error_at(at, "%s: the last row is %g %g %g %g, expected 0 0 0 1: no projection", what, v[3],
+                 v[7], v[11], v[15]);
+    return false;
 }
 
 static bool do_transform(struct pbrt *p, struct where at) {
-    (void)at;
-    return read_matrix(p, "Transform", &p->state.ctm);
+    return read_matrix(p, at, "Transform", &p->state.ctm);
 }
 
 static bool do_concat(struct pbrt *p, struct where at) {
     struct transform t;
-    (void)at;
-    return read_matrix(p, "ConcatTransform", &t) && apply(p, &t);
+    return read_matrix(p, at, "ConcatTransform", &t) && apply(p, &t);
 }
 
 static bool do_system(struct pbrt *p, struct where at) {

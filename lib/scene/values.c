@@ -141,7 +141,11 @@ static bool read_matrix(const struct xml_node *node, struct transform *step) {
     *step = transform_identity;
     for (int i = 0; i < n; i++)
         step->m[i / side][i % side] = v[i];
-    return true;
+    if (transform_make_affine(step))
+        return true;
+    log_error_at(node->at, "<matrix> has %g %g %g %g as its last row, expected 0 0 0 1: no projection",
+                 v[12], v[13], v[14], v[15]);
+    return false;
 }
 
 static bool read_step(const struct xml_node *node, struct transform *step) {

@@ -177,6 +177,8 @@ static void faults(void) {
     check_fault("<transform name='transform'><rotate angle='3'/></transform>", "has no axis");
     check_fault("<transform name='transform'><matrix value='1 2 3'/></transform>",
                 "expected 16 or 9 finite numbers");
+    check_fault("<transform name='transform'><matrix value='1 0 0 0  0 1 0 0  0 0 1 0  0 0 1 0'/>"
+                "</transform>", "0 0 1 0 as its last row");
     check_fault("<transform name='transform'><lookat origin='0 0 0' target='0 0 0'/></transform>",
                 "origin and target coincide");
     check_fault("<transform name='transform'><float name='x' value='1'/></transform>",

@@ -100,6 +100,7 @@ static void says_what_is_wrong(void) {
         {HEAD "Include \"scene.pbrt\"", "Camera stands after WorldBegin"},
         {HEAD "Translate 1 2", "expected 3 numbers of Translate"},
         {HEAD "Scale 1 0 1 Shape \"sphere\"", "no inverse"},
+        {HEAD "ConcatTransform [1 0 0 0  0 1 0 0  0 0 1 1  0 0 0 0]", "0 0 1 0, expected 0 0 0 1"},
         {HEAD "Rotate 1 0 0 0", "no length"},
         {HEAD "MediumInterface \"m\" \"\" Shape \"sphere\"", "there is no medium \"m\""},
         {HEAD "Material \"conductor\" \"spectrum eta\" [ 500 1 400 1 ] \"spectrum k\" [ 500 1 ]",

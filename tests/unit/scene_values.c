@@ -123,6 +123,7 @@ static void transforms(void) {
     check_transform("<translate x='1'/><scale value='2'/>", 4, 4, 6);
     check_transform("<matrix value='0 1 0 5 1 0 0 6 0 0 2 7 0 0 0 1'/>", 7, 7, 13);
     check_transform("<matrix value='0 1 0 1 0 0 0 0 2'/>", 2, 1, 6);
+    check_transform("<matrix value='2 0 0 2 0 2 0 0 0 0 2 0 0 0 1e-9 2'/>", 2, 2, 3);
     // the view's left is +x: looking along +x with z up, x of the camera is +y of the world
     check_transform("<lookat origin='10 0 0' target='11 0 0' up='0 0 1'/>", 13, 1, 2);
 }
