@@ -13,13 +13,14 @@
 // (bsdf/facet_loss.h): a broad lobe is added to the coat's reflection, the rest to T, and what the
 // coat reflects inside is all that it does not transmit, so that a white material returns
 // everything.
+#include "bsdf/boundary_table.h"
 #include "bsdf/roughness.h"
 #include "bsdf/smooth.h"
 #include "math/fresnel.h"
 #include "math/quadrature.h"
 #include "math/warp.h"
 
-enum { TABLE = 128, NODES_OUTSIDE = 32, NODES_INSIDE = 32, DIRECTIONS = 64, OUTSIDE = 32 };
+enum { NODES_OUTSIDE = 32, NODES_INSIDE = 32, DIRECTIONS = 64, OUTSIDE = 32 };
 enum { NODES_COMPENSATED = 96 };
 
 struct roughplastic {
@@ -34,8 +35,7 @@ struct roughplastic {
     struct microfacet facets;
     bool smooth;
     float mean_transmitted;       // 2 * integral of T(c) c dc
-    float transmitted[TABLE + 1]; // T at cosine (i / TABLE)^2
-    float reflected[TABLE + 1];
+    struct boundary_table outside;
     struct facet_loss loss; // on the outside
     float regained;         // share of the loss that the coat reflects
 };
@@ -71,23 +71,6 @@ static const struct param params[] = {
     PARAM_END,
 };
 
-// Fills the tables of the coat's outside.
-static void tabulate_outside(struct roughplastic *self, int nodes) {
-    for (int i = 0; i <= TABLE; i++) {
-        const float s = (float)i / TABLE;
-        double r, t;
-        microfacet_albedo(&self->facets, self->coat.eta, maxf(s * s, 1e-6f), nodes, &r, &t);
-        self->reflected[i] = (float)r;
-        self->transmitted[i] = (float)t;
-    }
-}
-
-static float lookup(const float *table, float cosine) {
-    const float x = sqrtf(cosine) * TABLE;
-    const int i = (int)minf(x, TABLE - 1);
-    return lerpf(x - (float)i, table[i], table[i + 1]);
-}
-
 // What the coat reflects inside, from direction cosine c.
 static double reflected_inside(const struct roughplastic *self, float c) {
     double r, t;
@@ -115,7 +98,7 @@ static void integrate_outside(struct roughplastic *self) {
     double c[OUTSIDE], w[OUTSIDE], out = 0;
     gauss_legendre(OUTSIDE, c, w);
     for (int i = 0; i < OUTSIDE; i++)
-        out += 2 * w[i] * c[i] * lookup(self->transmitted, (float)c[i]);
+        out += 2 * w[i] * c[i] * boundary_lookup(self->outside.transmitted, (float)c[i]);
     self->mean_transmitted = (float)out;
 }
 
@@ -146,8 +129,9 @@ static void compensate(struct roughplastic *self, struct arena *arena) {
     facet_loss_share(eta, self->loss.mean[0], within.mean[0], &share, &back);
     self->regained = 1 - share;
     const struct facet_loss_at loss = facet_loss_at(&self->loss, self->alpha);
-    for (int i = 0; i <= TABLE; i++)
-        self->transmitted[i] += share * facet_lost(&loss, v3(0, 0, sqr((float)i / TABLE)));
+    for (int i = 0; i <= BOUNDARY_TABLE; i++)
+        self->outside.transmitted[i] +=
+            share * facet_lost(&loss, v3(0, 0, sqr((float)i / BOUNDARY_TABLE)));
     integrate_outside(self);
     self->coat.leaving = self->mean_transmitted / (eta * eta);
 }
@@ -162,7 +146,8 @@ static bool prepare(struct object *object, struct arena *arena) {
     self->coat = (struct plastic_coat){.eta = eta, .nonlinear = self->nonlinear,
                                        .entering = (float)fresnel_dielectric_transmitted(eta)};
     if (!self->smooth)
-        tabulate_outside(self, compensated ? NODES_COMPENSATED : NODES_OUTSIDE);
+        boundary_tabulate(&self->facets, eta, compensated ? NODES_COMPENSATED : NODES_OUTSIDE,
+                          &self->outside);
     integrate_inside(self);
     if (!self->smooth)
         integrate_outside(self);
@@ -192,8 +177,9 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     c->wo = wo;
     c->quarter_area = 0.25f / microfacet_area(&self->facets, wo);
     c->specular = specular;
-    c->diffuse = plastic_base(diffuse, &self->coat) * lookup(self->transmitted, cos_o);
-    const spectrum s = specular * lookup(self->reflected, cos_o);
+    c->diffuse = plastic_base(diffuse, &self->coat) *
+                 boundary_lookup(self->outside.transmitted, cos_o);
+    const spectrum s = specular * boundary_lookup(self->outside.reflected, cos_o);
     spectrum d = c->diffuse * self->mean_transmitted;
     c->compensated = self->energy == ENERGY_COMPENSATED;
     if (c->compensated) {
@@ -223,7 +209,7 @@ static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
     const float diffuse = cos_i * INV_PI;
     *pdf_sa = lerpf(c->p_specular, diffuse, pdf_specular);
     const spectrum f = c->specular * (F * pdf_specular * microfacet_G1(&self->facets, wi)) +
-                       c->diffuse * (lookup(self->transmitted, cos_i) * diffuse);
+                       c->diffuse * (boundary_lookup(self->outside.transmitted, cos_i) * diffuse);
     return c->compensated ? f + c->regained * (facet_lost(&c->loss, wi) * diffuse) : f;
 }
 

@@ -15,7 +15,7 @@
 //   KHR_materials_specular                eta with the same reflectance at the normal
 //   KHR_materials_transmission            principledthin: spec_trans (a thin sheet), or with
 //   KHR_materials_volume                  principled: spec_trans, and a homogeneous medium inside
-//   KHR_materials_clearcoat               principled: clearcoat, clearcoat_gloss
+//   KHR_materials_clearcoat               coated: weight, alpha
 //   KHR_materials_sheen                   principled: sheen
 //   KHR_materials_anisotropy              principled: anisotropic; a metal: roughconductor
 //   KHR_materials_dispersion, iridescence nothing: one warning
@@ -56,19 +56,20 @@ static void apply_specular(struct gltf_making *m) {
     m->eta = index_of(root * root * mean * gltf_number(e, "specularFactor", 1));
 }
 
-static bool add_clearcoat(const struct gltf_making *m, struct xml_node *node) {
+static bool has_coat(const struct gltf_making *m) {
+    return gltf_number(m->clearcoat, "clearcoatFactor", 0) > 0;
+}
+
+// F0 = 0.04; without clearcoatNormalTexture a coat is flat also where its base is not.
+static bool add_coat(const struct gltf_making *m, struct xml_node *node) {
     const struct json *e = m->clearcoat;
-    const double strength = gltf_number(e, "clearcoatFactor", 0);
-    if (strength == 0)
-        return true;
     if (json_get(e, "clearcoatRoughnessTexture"))
         gltf_warn(m->g, "clearcoatRoughnessTexture is not used, its factor is");
     if (json_get(e, "clearcoatNormalTexture"))
-        gltf_warn(m->g, "clearcoatNormalTexture is not used: coats have the normals of their base");
+        gltf_warn(m->g, "clearcoatNormalTexture is not used: coats have the normals of the mesh");
     const double root = gltf_number(e, "clearcoatRoughnessFactor", 0);
-    // clearcoat_gloss runs from alpha 0.1 to 0.001
-    tree_number(m->r, node, "clearcoat_gloss", fmin(fmax((0.1 - root * root) / 0.099, 0), 1));
-    return gltf_add_number(m, node, "clearcoat", strength,
+    tree_number(m->r, node, "alpha", root * root);
+    return gltf_add_number(m, node, "weight", gltf_number(e, "clearcoatFactor", 0),
                            gltf_texture_of(m, e, "clearcoatTexture"), "r");
 }
 
@@ -136,7 +137,7 @@ static bool add_solid(const struct gltf_making *m, struct xml_node *parent) {
     add_sheen(m, node);
     const double strength = gltf_number(m->transmission, "transmissionFactor", 0);
     return gltf_add_base_colour(m, node, "base_color") && add_roughness(m, node) &&
-           gltf_add_number(m, node, "metallic", m->metallic, info, "b") && add_clearcoat(m, node) &&
+           gltf_add_number(m, node, "metallic", m->metallic, info, "b") &&
            (strength == 0 ||
             gltf_add_number(m, node, "spec_trans", strength,
                             gltf_texture_of(m, m->transmission, "transmissionTexture"), "r"));
@@ -220,12 +221,12 @@ static bool add_surface(const struct gltf_making *m, struct xml_node *parent) {
         return add_thin(m, parent);
     if (transmits(m))
         make_interior(m);
-    if (m->anisotropy && metal && !m->clearcoat)
+    if (m->anisotropy && metal)
         return add_brushed_metal(m, parent);
     return add_solid(m, parent);
 }
 
-// mask ( normalmap ( twosided ( surface ) ) ) as far as each is needed
+// mask ( twosided ( coated ( normalmap ( surface ) ) ) ) as far as each is needed
 static bool add_layers(const struct gltf_making *m, struct xml_node *outer) {
     struct xml_node *node = outer;
     if (has_alpha(m)) {
@@ -237,6 +238,11 @@ static bool add_layers(const struct gltf_making *m, struct xml_node *outer) {
     const struct json *normal = gltf_texture_of(m, m->material, "normalTexture");
     if (two_sided)
         node = start(m, node, "twosided");
+    if (has_coat(m)) {
+        node = start(m, node, "coated");
+        if (!add_coat(m, node))
+            return false;
+    }
     if (normal) {
         node = start(m, node, "normalmap");
         if (!add_normal_map(m, node, normal))

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// A clear dielectric coat over any material: the coat reflects, and what it leaves reaches the base,
+//
+//     f = w F D G / (4 cos_o cos_i) + base min(1 - w R(cos_o), 1 - w R(cos_i))
+//
+// with R the directional albedo of the coat's outside. The scaling of the base is reciprocal and
+// creates no energy over any base (after Kulla and Conty 2017, Revisiting physically based shading,
+// whose product over the mean creates some over mirrors); light that the coat would reflect back
+// inside is not followed, as in glTF's clear coat, and directions are not refracted. Over a base that
+// transmits, light is held to what the coat leaves on its outside. From behind, only the base is seen.
+#include "bsdf/boundary_table.h"
+#include "bsdf/roughness.h"
+#include "bsdf/smooth.h"
+#include "math/fresnel.h"
+
+enum { NODES = 32 };
+
+struct coated {
+    const struct object *base;
+    struct texture_ref weight;
+    struct dielectric_index index;
+    int distribution;
+    float alpha;
+    // made by prepare
+    float eta;
+    bool smooth;
+    struct microfacet facets;
+    struct boundary_table outside;
+};
+
+struct coated_data {
+    struct closure head;
+    const struct coated *self;
+    const struct closure *base; // NULL: black
+    vec3 wo;
+    float weight;
+    float left;         // 1 - w R(cos_o)
+    float quarter_area; // 1 / (4 sigma(wo)); 0: smooth
+    float p_coat;
+};
+
+static const struct param params[] = {
+    {"bsdf", PARAM_BSDF, offsetof(struct coated, base), .unit = "", .help = "the material below"},
+    {"weight", PARAM_TEXTURE_SCALAR, offsetof(struct coated, weight), .def = "1", .max = 1,
+     .unit = "", .help = "how much of a coat there is"},
+    DIELECTRIC_INDEX_PARAMS(struct coated, index, "1.5"),
+    {"distribution", PARAM_CHOICE, offsetof(struct coated, distribution), .def = "ggx", .unit = "",
+     .help = "distribution of facet normals", .choices = roughness_distributions},
+    {"alpha", PARAM_FLOAT, offsetof(struct coated, alpha), .def = "0", .max = 1000, .unit = "",
+     .help = "roughness; below 1e-4 the coat is smooth"},
+    PARAM_END,
+};
+
+static bool prepare(struct object *object, struct arena *arena) {
+    struct coated *self = object->data;
+    (void)arena;
+    self->eta = self->index.int_ior / self->index.ext_ior;
+    self->smooth = self->alpha < MICROFACET_ALPHA_MIN;
+    self->facets = microfacet_make((enum microfacet_type)self->distribution, self->alpha,
+                                   self->alpha);
+    if (!self->smooth)
+        boundary_tabulate(&self->facets, self->eta, NODES, &self->outside);
+    return bsdf_check_nesting(object);
+}
+
+static uint32_t lobes(const void *data) {
+    const struct coated *self = data;
+    return bsdf_lobes(self->base) | (self->smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_REFLECTION;
+}
+
+// R at a cosine above 0.
+static float reflected(const struct coated *self, float cosine) {
+    float cos_t;
+    return self->smooth ? fresnel_dielectric(cosine, self->eta, &cos_t)
+                        : boundary_lookup(self->outside.reflected, minf(cosine, 1));
+}
+
+// What the coat leaves the base of light between the two directions.
+static float left_of(const struct coated_data *c, vec3 wi) {
+    const bool seen_through = cos_theta(c->wo) > 0, lit_through = cos_theta(wi) > 0;
+    const float from_eye = seen_through ? c->left : 1;
+    if (!lit_through)
+        return from_eye;
+    return minf(from_eye, 1 - c->weight * reflected(c->self, cos_theta(wi)));
+}
+
+static const struct closure *resolve(const void *data, const struct bsdf_point *point, vec3 wo,
+                                     struct closure_stack *stack) {
+    const struct coated *self = data;
+    const float w = clampf(texture_eval_scalar(&self->weight, &point->at), 0, 1);
+    const struct closure *base = bsdf_resolve(self->base, point, wo, stack);
+    if (w == 0 || (!base && !(cos_theta(wo) > 0)))
+        return base;
+    struct coated_data *c = closure_alloc(stack, &bsdf_coated, sizeof *c, base ? base->lobes : 0);
+    *c = (struct coated_data){c->head, self, base, wo, w, 1, 0, 0};
+    if (!(cos_theta(wo) > 0))
+        return &c->head;
+    c->head.lobes |= (self->smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_REFLECTION;
+    const float coat = w * reflected(self, cos_theta(wo));
+    c->left = 1 - coat;
+    c->quarter_area = self->smooth ? 0 : 0.25f / microfacet_area(&self->facets, wo);
+    const float below = base ? c->left * spectrum_mean(closure_albedo(base)) : 0;
+    c->p_coat = coat + below > 0 ? coat / (coat + below) : 1;
+    return &c->head;
+}
+
+// The rough coat's own reflection; 0 from behind and of a smooth coat.
+static float eval_coat(const struct coated_data *c, vec3 wi, float *pdf_sa) {
+    *pdf_sa = 0;
+    if (c->quarter_area == 0 || !(cos_theta(wi) > 0))
+        return 0;
+    const struct coated *self = c->self;
+    const vec3 h = normalize(c->wo + wi);
+    float cos_t;
+    *pdf_sa = microfacet_D(&self->facets, h) * c->quarter_area;
+    return c->weight * fresnel_dielectric(dot(c->wo, h), self->eta, &cos_t) * *pdf_sa *
+           microfacet_G1(&self->facets, wi);
+}
+
+static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
+    const struct coated_data *c = (const void *)closure;
+    float pdf_coat, pdf_base = 0;
+    spectrum f = spectrum_grey(eval_coat(c, wi, &pdf_coat));
+    if (c->base)
+        f += left_of(c, wi) * closure_eval(c->base, wi, &pdf_base);
+    *pdf_sa = lerpf(c->p_coat, pdf_base, pdf_coat);
+    return f;
+}
+
+static bool sample_base(const struct coated_data *c, float u1, struct vec2 u2,
+                        struct bsdf_sample *s) {
+    if (!c->base || !closure_sample(c->base, u1, u2, s))
+        return false;
+    if (s->lobe & LOBE_DELTA) {
+        s->pdf_sa *= 1 - c->p_coat;
+        s->weight = s->weight * (left_of(c, s->wi) / (1 - c->p_coat));
+        return true;
+    }
+    const spectrum f = eval(&c->head, s->wi, &s->pdf_sa);
+    s->weight = f / s->pdf_sa;
+    return true;
+}
+
+static bool sample_coat(const struct coated_data *c, struct vec2 u2, struct bsdf_sample *s) {
+    s->eta = 1;
+    if (c->quarter_area == 0) {
+        *s = (struct bsdf_sample){v3(-c->wo[0], -c->wo[1], c->wo[2]),
+                                  spectrum_grey((1 - c->left) / c->p_coat), c->p_coat, 1,
+                                  LOBE_SPECULAR | LOBE_REFLECTION};
+        return true;
+    }
+    s->wi = normalize(reflect(c->wo, microfacet_sample(&c->self->facets, c->wo, u2)));
+    s->lobe = LOBE_GLOSSY | LOBE_REFLECTION;
+    const spectrum f = eval(&c->head, s->wi, &s->pdf_sa);
+    if (!(s->pdf_sa > 0))
+        return false;
+    s->weight = f / s->pdf_sa;
+    return true;
+}
+
+static bool sample(const struct closure *closure, float u1, struct vec2 u2,
+                   struct bsdf_sample *s) {
+    const struct coated_data *c = (const void *)closure;
+    if (u1 < c->p_coat)
+        return sample_coat(c, u2, s);
+    return sample_base(c, minf((u1 - c->p_coat) / (1 - c->p_coat), 0x1.fffffep-1f), u2, s);
+}
+
+static spectrum albedo(const struct closure *closure) {
+    const struct coated_data *c = (const void *)closure;
+    const spectrum coat = spectrum_grey(1 - c->left);
+    return c->base ? coat + c->left * closure_albedo(c->base) : coat;
+}
+
+static spectrum null_transmittance(const void *data, const struct bsdf_point *point, vec3 wo) {
+    const struct coated *self = data;
+    const float w = clampf(texture_eval_scalar(&self->weight, &point->at), 0, 1);
+    return (1 - w * reflected(self, fabsf(cos_theta(wo)))) *
+           bsdf_null_transmittance(self->base, point, wo);
+}
+
+const struct bsdf_type bsdf_coated = {
+    .entry = {.name = "coated", .help = "a clear coat over any material", .params = params,
+              .size = sizeof(struct coated)},
+    .claims = CLAIM_RECIPROCAL | CLAIM_ENERGY,
+    .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
+    .albedo = albedo, .null_transmittance = null_transmittance,
+};
