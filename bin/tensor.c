@@ -131,7 +131,8 @@ const struct subcommand subcommand_tensor = {
               .size = sizeof(struct values)},
     .options = {.options = options, .arguments = arguments,
                 .description = "Merging gives the exact mean of tensors of one scene that were "
-                               "precomputed with\ndifferent --seed, weighted by their samples.",
+                               "precomputed with\ndifferent --seed, weighted by their samples, and of ranges "
+                               "(--samples) the bits of\none run over all of them.",
                 .examples = "  relume tensor info tea.safetensors\n"
                             "  relume tensor check tea.safetensors\n"
                             "  relume tensor requantise tea.safetensors -o small.safetensors --half\n"

@@ -13,12 +13,16 @@
 //     N.pixels   U32 [n]             index y * width + x of each pixel, all different
 //     N.values   F32 or BF16 [tiles, coefficients, channels, 64]   mean of the two half-sums
 //     N.halves   same                half their difference; absent where the tensor has no noise
+//     N.sums     F64 [tiles, coefficients, 2 channels, 64]   sums of the even samples' channels, then
+//                    of the odd ones', from which more samples go on; or absent
 //     N.view     F32 [tiles, 64]     angle between normal and eye for f_o, radians; or absent
+//     N.views    F64 [2, tiles, 64]  sum of those angles over the samples, and how many; or absent
 //     N.weights  F32 [coefficients, channels]   the weights of the scene as it was; or absent
 //     N.edges0   F64 [bins + 1]      bin edges of the first axis, radians (N.edges1: of the second);
 //                    [bins]          of a hat basis: its nodes
 //
-// and "fixed" F32 [3, height, width], what no weight changes; or absent. Tiles are 64 pixels in the
+// and "fixed" F32 [3, height, width], what no weight changes, or absent; "fixed_sums" F64, the same as
+// a sum over all samples, or absent. Tiles are 64 pixels in the
 // order of the list; lanes beyond its end are zero. The order of coefficients is (group, bin of
 // axis 0, bin of axis 1), the last running fastest. What the blocks mean stands as a JSON text
 // under "relume" in the header's "__metadata__"; the field descriptions are those of the structs.
@@ -66,6 +70,7 @@ struct tensor_block {
     const void *values;
     const void *halves; // NULL: no noise
     const float *view;  // NULL: none
+    const double *sums, *views; // NULL: none
     const float *weights; // NULL: none
 };
 
@@ -75,6 +80,7 @@ struct tensor {
     uint32_t block_count;
     struct tensor_block *blocks;
     const float *fixed; // 3 planes; NULL: black
+    const double *fixed_sums; // NULL: none
 };
 
 static inline uint64_t tensor_tiles(const struct tensor_block *b) {
@@ -89,6 +95,18 @@ static inline size_t tensor_value_size(enum tensor_storage s) {
 static inline uint64_t tensor_bytes(const struct tensor_block *b) {
     return tensor_tiles(b) * b->coefficients * b->channels * TENSOR_LANES *
            tensor_value_size(b->storage);
+}
+
+// Whether samples can be added to it exactly.
+static inline bool tensor_has_sums(const struct tensor *t) {
+    return t->fixed_sums != NULL;
+}
+
+// Where the sum of a coefficient's channel over the samples of one half stands in `sums`.
+static inline size_t tensor_sum_at(const struct tensor_block *b, uint64_t lane, size_t coefficient,
+                                   uint32_t half, uint32_t channel) {
+    return (((lane / TENSOR_LANES * b->coefficients + coefficient) * 2 + half) * b->channels +
+            channel) * TENSOR_LANES + lane % TENSOR_LANES;
 }
 
 // bfloat16, rounded to nearest even; infinities stay, NaN stays NaN.
@@ -123,15 +141,17 @@ void tensor_close(struct tensor_file *f); // NULL is fine
 
 struct tensor_writer;
 
-// Begins a file for a tensor of this shape: everything but values, halves and fixed is taken from
-// `shape` and written at once; a block has halves, and the tensor a fixed picture, where the pointer
-// is not NULL (it is not read). meta: what else is known, merged into the metadata. Atomic: the file
+// Begins a file for a tensor of this shape: everything but values, halves, sums and fixed is taken from
+// `shape` and written at once; a block has halves or sums, and the tensor a fixed picture, where the
+// pointer is not NULL (it is not read). meta: what else is known, merged into the metadata. Atomic: the file
 // appears when the writer is closed. NULL after an error message.
 struct tensor_writer *tensor_create(const char *path, const struct tensor *shape);
 // Where the parts of the file lie in memory, to be filled: zero at first, from any thread.
 void *tensor_values(struct tensor_writer *w, uint32_t block);
 void *tensor_halves(struct tensor_writer *w, uint32_t block);
+double *tensor_sums(struct tensor_writer *w, uint32_t block);
 float *tensor_fixed(struct tensor_writer *w);
+double *tensor_fixed_sums(struct tensor_writer *w);
 // Completes the file. false after an error message.
 bool tensor_finish(struct tensor_writer *w);
 void tensor_abandon(struct tensor_writer *w);

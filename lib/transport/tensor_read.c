@@ -234,6 +234,9 @@ static bool read_block(struct tensor_file *f, const struct json *j, uint32_t blo
     const struct array values = {array_name(f, block, "values"), storage, 4,
                                  {tiles, b->coefficients, channels, TENSOR_LANES}};
     struct array halves = values;
+    const struct array sums = {array_name(f, block, "sums"), "F64", 4,
+                               {tiles, b->coefficients, 2 * channels, TENSOR_LANES}};
+    const struct array views = {array_name(f, block, "views"), "F64", 3, {2, tiles, TENSOR_LANES}};
     const struct array view = {array_name(f, block, "view"), "F32", 2, {tiles, TENSOR_LANES}};
     halves.name = array_name(f, block, "halves");
     b->values = find_array(f, &values, true, &wrong);
@@ -242,7 +245,13 @@ static bool read_block(struct tensor_file *f, const struct json *j, uint32_t blo
     b->halves = find_array(f, &halves, false, &wrong);
     if (wrong)
         return false;
+    b->sums = find_array(f, &sums, false, &wrong);
+    if (wrong)
+        return false;
     b->view = find_array(f, &view, false, &wrong);
+    if (wrong)
+        return false;
+    b->views = find_array(f, &views, false, &wrong);
     if (wrong)
         return false;
     const struct array weights = {array_name(f, block, "weights"), "F32", 2,
@@ -252,6 +261,16 @@ static bool read_block(struct tensor_file *f, const struct json *j, uint32_t blo
 }
 
 // ---- file ---------------------------------------------------------------------------------------
+
+// Sums of all blocks or of none.
+static bool sums_are_whole(struct tensor_file *f) {
+    const struct tensor *t = &f->tensor;
+    for (uint32_t i = 0; i < t->block_count; i++)
+        if (!t->blocks[i].sums != !t->fixed_sums ||
+            !t->blocks[i].views != !(t->blocks[i].view && t->fixed_sums))
+            return fail(f, "block %u: some sums are there and some are not", i);
+    return true;
+}
 
 static bool read_meta(struct tensor_file *f) {
     struct tensor *t = &f->tensor;
@@ -275,7 +294,13 @@ static bool read_meta(struct tensor_file *f) {
             return false;
     const struct array fixed = {"fixed", "F32", 3, {3, height, width}};
     t->fixed = find_array(f, &fixed, false, &wrong);
-    return !wrong && arrays_are_apart(f);
+    if (wrong)
+        return false;
+    struct array fixed_sums = fixed;
+    fixed_sums.name = "fixed_sums";
+    fixed_sums.dtype = "F64";
+    t->fixed_sums = find_array(f, &fixed_sums, false, &wrong);
+    return !wrong && sums_are_whole(f) && arrays_are_apart(f);
 }
 
 static bool read_header(struct tensor_file *f) {
@@ -341,6 +366,13 @@ static bool all_finite(const void *values, enum tensor_storage storage, uint64_t
     return finite;
 }
 
+static bool sums_finite(const double *sums, uint64_t n) {
+    bool finite = true;
+    for (uint64_t i = 0; i < n && sums; i++)
+        finite &= isfinite(sums[i]) != 0;
+    return finite;
+}
+
 bool tensor_check_values(const struct tensor_file *f) {
     const struct tensor *t = &f->tensor;
     for (uint32_t i = 0; i < t->block_count; i++) {
@@ -348,12 +380,14 @@ bool tensor_check_values(const struct tensor_file *f) {
         const uint64_t n = tensor_bytes(b) / tensor_value_size(b->storage);
         if (!all_finite(b->values, b->storage, n) ||
             (b->halves && !all_finite(b->halves, b->storage, n)) ||
+            !sums_finite(b->sums, 2 * n) || !sums_finite(b->views, 2 * tensor_tiles(b) * TENSOR_LANES) ||
             (b->weights &&
              !all_finite(b->weights, TENSOR_F32, (uint64_t)b->coefficients * b->channels)) ||
             (b->view && !all_finite(b->view, TENSOR_F32, tensor_tiles(b) * TENSOR_LANES)))
             return fail(f, "block %u (%s.%s) holds values that are not finite", i, b->object, b->term);
     }
-    if (t->fixed && !all_finite(t->fixed, TENSOR_F32, 3ull * t->width * t->height))
+    if ((t->fixed && !all_finite(t->fixed, TENSOR_F32, 3ull * t->width * t->height)) ||
+        !sums_finite(t->fixed_sums, 3ull * t->width * t->height))
         return fail(f, "the fixed picture holds values that are not finite");
     return true;
 }

@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "base/mem.h"
+#include "transport/sample_ranges.h"
 
 enum { ABSENT = UINT32_MAX };
 
@@ -25,6 +26,7 @@ struct remake {
     struct json *meta;
     struct arena arena;
     uint32_t crop[4];
+    bool exact; // ranges of samples of one seed, by their sums
     struct tensor_remade *result;
     double largest;
 };
@@ -49,7 +51,7 @@ static bool same_value(const struct json *a, const struct json *b) {
 // Whether what the coefficients mean is the same; samples and how they were made may differ.
 static bool same_meaning(const struct json *a, const struct json *b) {
     static const char *const free_keys[] = {"samples", "seed", "command", "program", "scene", "blocks",
-                                            "merged", "packets", NULL};
+                                            "merged", "packets", "ranges", NULL};
     for (int side = 0; side < 2; side++) {
         const struct json *x = side ? b : a, *y = side ? a : b;
         for (size_t i = 0; i < json_count(x); i++) {
@@ -67,7 +69,7 @@ static bool same_meaning(const struct json *a, const struct json *b) {
 static bool same_axis(const struct tensor_axis *a, const struct tensor_axis *b) {
     return strcmp(a->name, b->name) == 0 && a->basis == b->basis && a->bins == b->bins &&
            !a->edges == !b->edges &&
-           (!a->edges || memcmp(a->edges, b->edges, ((size_t)a->bins + 1) * sizeof *a->edges) == 0);
+           (!a->edges || memcmp(a->edges, b->edges, tensor_edges(a) * sizeof *a->edges) == 0);
 }
 
 static bool same_block(const struct tensor_block *a, const struct tensor_block *b) {
@@ -105,6 +107,29 @@ static size_t parts_of(const struct tensor *t, size_t i, int64_t *seed, int64_t 
     json_read_integer(json_get(at, "seed"), seed);
     json_read_integer(json_get(at, "samples"), samples);
     return merged ? json_count(merged) : 1;
+}
+
+// Ranges of samples of one seed that kept their sums unite to the bits of one run.
+static bool are_ranges(const struct remake *r) {
+    bool are = r->options->count > 1;
+    for (size_t s = 0; s < r->options->count && are; s++) {
+        const struct tensor *t = r->sources[s].tensor;
+        are = tensor_has_sums(t) &&
+              same_value(json_get(t->meta, "seed"), json_get(r->sources[0].tensor->meta, "seed"));
+    }
+    return are;
+}
+
+static bool unite_ranges(struct remake *r) {
+    struct sample_ranges ranges = {0};
+    bool good = true;
+    for (size_t s = 0; s < r->options->count && good; s++)
+        good = sample_ranges_add(&ranges, r->sources[s].tensor->meta) ||
+               fail(r, s, "has samples that are among the others'");
+    if (good)
+        sample_ranges_describe(&ranges, r->meta);
+    sample_ranges_finish(&ranges);
+    return good;
 }
 
 // Lists the parts of all sources. Two of one seed are not independent.
@@ -210,8 +235,24 @@ static uint32_t *list_pixels(struct remake *r, uint32_t block, uint64_t *count) 
     return list;
 }
 
+// Sum of the angles of a pixel, or the number of samples, over all ranges.
+static double views_at(const struct remake *r, uint32_t block, uint32_t pixel, uint32_t which) {
+    double sum = 0;
+    for (size_t s = 0; s < r->options->count; s++) {
+        const struct tensor_block *b = &r->sources[s].tensor->blocks[block];
+        const uint32_t lane = r->sources[s].lane[pixel];
+        if (lane != ABSENT)
+            sum += b->views[which * tensor_tiles(b) * TENSOR_LANES + lane];
+    }
+    return sum;
+}
+
 static float view_at(const struct remake *r, uint32_t block, uint32_t pixel) {
     double sum = 0, all = 0;
+    if (r->exact) {
+        all = views_at(r, block, pixel, 1);
+        return all > 0 ? (float)(views_at(r, block, pixel, 0) / all) : 0;
+    }
     for (size_t s = 0; s < r->options->count; s++) {
         const uint32_t lane = r->sources[s].lane[pixel];
         if (lane == ABSENT)
@@ -222,8 +263,19 @@ static float view_at(const struct remake *r, uint32_t block, uint32_t pixel) {
     return (float)(sum / all);
 }
 
+static const double *views_of(struct remake *r, uint32_t block, const uint32_t *list) {
+    const struct tensor_block *b = &r->blocks[block];
+    const uint64_t lanes = tensor_tiles(b) * TENSOR_LANES;
+    double *views = arena_alloc(&r->arena, (2 * lanes + 1) * sizeof *views);
+    for (uint32_t which = 0; which < 2; which++)
+        for (uint64_t i = 0; i < b->pixel_count; i++)
+            views[which * lanes + i] = views_at(r, block, list[i], which);
+    return views;
+}
+
 static void shape_block(struct remake *r, uint32_t block) {
     static const float some;
+    static const double some_sums;
     struct tensor_block *b = &r->blocks[block];
     uint64_t count;
     find_lanes(r, block);
@@ -233,6 +285,7 @@ static void shape_block(struct remake *r, uint32_t block) {
     b->pixel_count = count;
     b->storage = r->options->new_storage ? r->options->storage : b->storage;
     b->halves = b->halves ? &some : NULL;
+    b->sums = r->exact ? &some_sums : NULL;
     b->pixels = pixels;
     float *view = b->view ? arena_alloc(&r->arena, (tensor_tiles(b) + 1) * TENSOR_LANES * 4) : NULL;
     for (uint64_t i = 0; i < count; i++) {
@@ -242,6 +295,7 @@ static void shape_block(struct remake *r, uint32_t block) {
             view[i] = view_at(r, block, list[i]);
     }
     b->view = view;
+    b->views = view && r->exact ? views_of(r, block, list) : NULL;
     r->result->pixels += count;
     r->result->bytes += tensor_bytes(b) * (b->halves ? 2 : 1);
     mem_free(list);
@@ -263,13 +317,47 @@ static void put(struct remake *r, const struct tensor_block *b, void *out, size_
     r->largest = fmax(r->largest, fabs(v));
 }
 
+static uint32_t old_pixel(const struct remake *r, uint32_t p) {
+    return (p / r->tensor.width + r->crop[1]) * r->sources[0].tensor->width + p % r->tensor.width +
+           r->crop[0];
+}
+
+// The sum over all ranges of what a pixel's half has of one channel of a coefficient.
+static double sum_of(const struct remake *r, uint32_t block, uint32_t pixel, uint32_t coefficient,
+                     uint32_t half, uint32_t channel) {
+    double sum = 0;
+    for (size_t s = 0; s < r->options->count; s++) {
+        const struct tensor_block *from = &r->sources[s].tensor->blocks[block];
+        const uint32_t lane = r->sources[s].lane[pixel];
+        if (lane != ABSENT)
+            sum += from->sums[tensor_sum_at(from, lane, coefficient, half, channel)];
+    }
+    return sum;
+}
+
+static void fill_exactly(struct remake *r, uint32_t block, void *values, void *halves,
+                         double *sums) {
+    const struct tensor_block *b = &r->blocks[block];
+    const double scale = 1.0 / (double)r->result->samples;
+    for (uint32_t i = 0; i < b->pixel_count; i++)
+        for (uint32_t c = 0; c < b->coefficients; c++)
+            for (uint32_t k = 0; k < b->channels; k++) {
+                const uint32_t pixel = old_pixel(r, b->pixels[i]);
+                const size_t at = place_of(b, i, (size_t)c * b->channels + k);
+                const double even = sum_of(r, block, pixel, c, 0, k);
+                const double odd = sum_of(r, block, pixel, c, 1, k);
+                put(r, b, values, at, scale * (even + odd));
+                put(r, b, halves, at, scale * (even - odd));
+                sums[tensor_sum_at(b, i, c, 0, k)] = even;
+                sums[tensor_sum_at(b, i, c, 1, k)] = odd;
+            }
+}
+
 static void fill(struct remake *r, uint32_t block, bool halves, void *out) {
     const struct tensor_block *b = &r->blocks[block];
     const size_t rows = (size_t)b->coefficients * b->channels;
-    const uint32_t w = r->sources[0].tensor->width;
     for (uint32_t i = 0; i < b->pixel_count; i++) {
-        const uint32_t p = b->pixels[i];
-        const uint32_t old = (p / r->tensor.width + r->crop[1]) * w + p % r->tensor.width + r->crop[0];
+        const uint32_t old = old_pixel(r, b->pixels[i]);
         for (size_t row = 0; row < rows; row++) {
             double sum = 0;
             for (size_t s = 0; s < r->options->count; s++) {
@@ -298,17 +386,33 @@ static void fill_fixed(const struct remake *r, float *out) {
             }
 }
 
+static void fill_fixed_exactly(const struct remake *r, float *out, double *sums) {
+    const size_t n = 3 * (size_t)r->tensor.width * r->tensor.height; // there is no crop
+    for (size_t i = 0; i < n; i++) {
+        sums[i] = 0;
+        for (size_t s = 0; s < r->options->count; s++)
+            sums[i] += r->sources[s].tensor->fixed_sums[i];
+        out[i] = (float)(sums[i] / (double)r->result->samples);
+    }
+}
+
 static bool write_all(struct remake *r, const char *output) {
     struct tensor_writer *w = tensor_create(output, &r->tensor);
     if (!w)
         return false;
     for (uint32_t i = 0; i < r->tensor.block_count; i++) {
         find_lanes(r, i);
+        if (r->exact) {
+            fill_exactly(r, i, tensor_values(w, i), tensor_halves(w, i), tensor_sums(w, i));
+            continue;
+        }
         fill(r, i, false, tensor_values(w, i));
         if (r->blocks[i].halves)
             fill(r, i, true, tensor_halves(w, i));
     }
-    if (r->tensor.fixed)
+    if (r->exact)
+        fill_fixed_exactly(r, tensor_fixed(w), tensor_fixed_sums(w));
+    else if (r->tensor.fixed)
         fill_fixed(r, tensor_fixed(w));
     r->result->worst = r->largest > 0 ? r->result->worst / r->largest : 0;
     return tensor_finish(w);
@@ -331,20 +435,23 @@ static bool set_crop(struct remake *r) {
 
 static bool remake(struct remake *r, const char *output) {
     static const float some;
+    static const double some_sums;
     const struct tensor *first;
     if (!open_sources(r) || !set_crop(r))
         return false;
     first = r->sources[0].tensor;
     r->meta = json_clone(first->meta);
+    r->exact = are_ranges(r);
     if (r->options->count > 1) {
         json_add_count(r->meta, "samples", (int64_t)r->result->samples);
-        if (!list_parts(r))
+        if (r->exact ? !unite_ranges(r) : !list_parts(r))
             return false;
     }
     json_add_text(r->meta, "command", r->options->command);
     r->blocks = arena_alloc(&r->arena, (first->block_count + 1) * sizeof *r->blocks);
     r->tensor = (struct tensor){r->crop[2] - r->crop[0], r->crop[3] - r->crop[1], r->meta,
-                                first->block_count, r->blocks, first->fixed ? &some : NULL};
+                                first->block_count, r->blocks, first->fixed ? &some : NULL,
+                                r->exact ? &some_sums : NULL};
     for (uint32_t i = 0; i < first->block_count; i++)
         shape_block(r, i);
     return write_all(r, output);
@@ -363,35 +470,4 @@ bool tensor_remake(const struct tensor_remake *o, const char *output, struct ten
     json_destroy(r.meta);
     arena_finish(&r.arena);
     return done;
-}
-
-static void describe_block(const struct tensor_block *b, struct json *j) {
-    json_add_text(j, "object", b->object);
-    json_add_text(j, "term", b->term);
-    json_add_count(j, "pixels", (int64_t)b->pixel_count);
-    json_add_count(j, "groups", b->groups);
-    for (uint32_t i = 0; i < b->axis_count; i++)
-        json_add_count(j, b->axes[i].name, b->axes[i].bins);
-    json_add_count(j, "coefficients", b->coefficients);
-    json_add_text(j, "storage", b->storage == TENSOR_BF16 ? "bf16" : "f32");
-    json_add_bool(j, "halves", b->halves != NULL);
-    json_add_count(j, "bytes", (int64_t)tensor_bytes(b));
-}
-
-void tensor_describe(const struct tensor *t, struct json *out) {
-    json_add_count(out, "width", t->width);
-    json_add_count(out, "height", t->height);
-    for (size_t i = 0; i < json_count(t->meta); i++) {
-        const char *key = json_key(t->meta, i), *text = json_text(json_get(t->meta, key));
-        double number;
-        if (text)
-            json_add_text(out, key, text);
-        else if (strcmp(key, "width") != 0 && strcmp(key, "height") != 0 &&
-                 json_read_number(json_get(t->meta, key), &number))
-            json_add_number(out, key, number);
-    }
-    json_add_bool(out, "fixed", t->fixed != NULL);
-    struct json *blocks = json_add_array(out, "blocks");
-    for (uint32_t i = 0; i < t->block_count; i++)
-        describe_block(&t->blocks[i], json_append_object(blocks));
 }

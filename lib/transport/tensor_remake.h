@@ -3,7 +3,8 @@
 //
 // Tensors of one scene that differ in their seeds merge to the exact mean, weighted by their samples
 // (in double, rounded once); halves too, so that the error told is that of the merged tensor. A list
-// of pixels becomes the union of the lists. The metadata get "samples", their sum, and "merged",
+// of pixels becomes the union of the lists. Ranges of samples of one seed that kept their sums merge to
+// the bits of one run over all of them, and keep their sums; nothing else does. The metadata get "samples", their sum, and "merged",
 // [{"seed", "samples"}, ...], by which a tensor is refused that is already part of another.
 #pragma once
 

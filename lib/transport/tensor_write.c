@@ -19,8 +19,8 @@ struct tensor_writer {
     unsigned char *map;
     size_t size;
     unsigned char *data;
-    uint64_t *values, *halves; // offsets by block
-    uint64_t fixed;
+    uint64_t *values, *halves, *sums; // offsets by block
+    uint64_t fixed, fixed_sums;
     const struct tensor *shape; // while the writer is being made
 };
 
@@ -123,7 +123,8 @@ static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
     const struct tensor_block *b = &w->shape->blocks[i];
     const uint64_t tiles = tensor_tiles(b);
     const uint64_t shape[4] = {tiles, b->coefficients, b->channels, TENSOR_LANES};
-    const uint64_t view[2] = {tiles, TENSOR_LANES};
+    const uint64_t sums[4] = {tiles, b->coefficients, 2ull * b->channels, TENSOR_LANES};
+    const uint64_t view[2] = {tiles, TENSOR_LANES}, views[3] = {2, tiles, TENSOR_LANES};
     const uint64_t weights[2] = {b->coefficients, b->channels};
     const char *dtype = storage_name(b->storage);
     const size_t item = tensor_value_size(b->storage);
@@ -135,11 +136,15 @@ static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
     }
     if (b->view)
         add_small(p, i, "view", "F32", 4, view, 2, b->view, tiles * TENSOR_LANES * 4);
+    if (b->views)
+        add_small(p, i, "views", "F64", 8, views, 3, b->views, tiles * TENSOR_LANES * 16);
     if (b->weights)
         add_small(p, i, "weights", "F32", 4, weights, 2, b->weights, weights[0] * weights[1] * 4);
     w->values[i] = add_small(p, i, "values", dtype, item, shape, 4, NULL, 0);
     if (b->halves)
         w->halves[i] = add_small(p, i, "halves", dtype, item, shape, 4, NULL, 0);
+    if (b->sums)
+        w->sums[i] = add_small(p, i, "sums", "F64", 8, sums, 4, NULL, 0);
 }
 
 // The header as a text that ends, with the length before it, at a multiple of the alignment.
@@ -201,6 +206,8 @@ static bool make_file(struct tensor_writer *w) {
         plan_block(w, &p, i);
     if (t->fixed)
         w->fixed = add_array(p.header, "fixed", "F32", 4, fixed, 3, &p.end);
+    if (t->fixed_sums)
+        w->fixed_sums = add_array(p.header, "fixed_sums", "F64", 8, fixed, 3, &p.end);
     const bool made = write_plan(w, &p);
     mem_free(text);
     json_destroy(meta);
@@ -214,6 +221,7 @@ struct tensor_writer *tensor_create(const char *path, const struct tensor *shape
     w->shape = shape;
     w->values = mem_array(shape->block_count, sizeof *w->values);
     w->halves = mem_array(shape->block_count, sizeof *w->halves);
+    w->sums = mem_array(shape->block_count, sizeof *w->sums);
     const bool named = snprintf(w->path, sizeof w->path, "%s", path) < (int)sizeof w->path &&
                        file_temp_name(path, w->temp, sizeof w->temp);
     const bool made = named && make_file(w);
@@ -233,8 +241,16 @@ void *tensor_halves(struct tensor_writer *w, uint32_t block) {
     return w->data + w->halves[block];
 }
 
+double *tensor_sums(struct tensor_writer *w, uint32_t block) {
+    return (double *)(void *)(w->data + w->sums[block]);
+}
+
 float *tensor_fixed(struct tensor_writer *w) {
     return (float *)(void *)(w->data + w->fixed);
+}
+
+double *tensor_fixed_sums(struct tensor_writer *w) {
+    return (double *)(void *)(w->data + w->fixed_sums);
 }
 
 bool tensor_finish(struct tensor_writer *w) {
@@ -255,5 +271,6 @@ void tensor_abandon(struct tensor_writer *w) {
         file_discard(w->temp);
     mem_free(w->values);
     mem_free(w->halves);
+    mem_free(w->sums);
     mem_free(w);
 }

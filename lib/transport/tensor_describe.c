@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string.h>
+
+#include "transport/tensor_remake.h"
+
+static void describe_block(const struct tensor_block *b, struct json *j) {
+    json_add_text(j, "object", b->object);
+    json_add_text(j, "term", b->term);
+    json_add_count(j, "pixels", (int64_t)b->pixel_count);
+    json_add_count(j, "groups", b->groups);
+    for (uint32_t i = 0; i < b->axis_count; i++)
+        json_add_count(j, b->axes[i].name, b->axes[i].bins);
+    json_add_count(j, "coefficients", b->coefficients);
+    json_add_text(j, "storage", b->storage == TENSOR_BF16 ? "bf16" : "f32");
+    json_add_bool(j, "halves", b->halves != NULL);
+    if (b->sums)
+        json_add_bool(j, "sums", true);
+    json_add_count(j, "bytes", (int64_t)tensor_bytes(b));
+}
+
+void tensor_describe(const struct tensor *t, struct json *out) {
+    json_add_count(out, "width", t->width);
+    json_add_count(out, "height", t->height);
+    for (size_t i = 0; i < json_count(t->meta); i++) {
+        const char *key = json_key(t->meta, i), *text = json_text(json_get(t->meta, key));
+        double number;
+        if (text)
+            json_add_text(out, key, text);
+        else if (strcmp(key, "width") != 0 && strcmp(key, "height") != 0 &&
+                 json_read_number(json_get(t->meta, key), &number))
+            json_add_number(out, key, number);
+    }
+    json_add_bool(out, "fixed", t->fixed != NULL);
+    struct json *blocks = json_add_array(out, "blocks");
+    for (uint32_t i = 0; i < t->block_count; i++)
+        describe_block(&t->blocks[i], json_append_object(blocks));
+}
