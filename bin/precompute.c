@@ -55,6 +55,17 @@ static const struct option_spec options[] = {
      .help = "samples per pixel; 0: what the scene asks for; edit --direct:\n"
              "positions in a pixel, 0: 16",
      .def = "0"},
+    {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
+     .help = "edit: samples A to B-1 only, multiples of 64, for `relume tensor merge`"},
+    {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "SECONDS", .min = 0,
+     .max = 1e9, .help = "edit: stop after so long: 90, 90s, 15m, 2h"},
+    {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
+     .min = 0, .max = 1e9, .help = "edit: every so often write the tensor of the samples so far, which can\n"
+     "be edited already"},
+    {.name = "resume", .type = OPTION_FLAG, .offset = AT(resume),
+     .help = "edit: go on from the output if it is there, also to more samples than\n"
+             "before. These four keep exact sums in the tensor, which make it three\n"
+             "times as large; `relume tensor requantise` drops them"},
     {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
      .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
     {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
@@ -153,6 +164,10 @@ static int run(const void *values, const char *command) {
     const bool edit = strcmp(v->kind, "edit") == 0;
     if (!edit && strcmp(v->kind, "relight") != 0) {
         log_error("precompute %s: expected relight or edit", v->kind);
+        return EXIT_USAGE;
+    }
+    if (precompute_is_progressive(v) && (!edit || v->direct)) {
+        log_error("--samples, --time, --checkpoint and --resume go with edit, without --direct");
         return EXIT_USAGE;
     }
     if (v->quiet)

@@ -7,15 +7,20 @@
 
 struct precompute_values {
     struct receiver receiver;
-    const char *kind, *scene, *output, *basis, *integrator, *sampler, *series, *tail;
+    const char *kind, *scene, *output, *basis, *integrator, *sampler, *series, *tail, *samples;
     int spp, size[2], crop[4], max_depth, seed, threads, bounces;
     int lights, light_samples, packets;
-    double memory;
-    bool half, dry_run, lenient, quiet, json, direct, unshadowed;
+    double memory, seconds, checkpoint;
+    bool resume, half, dry_run, lenient, quiet, json, direct, unshadowed;
     struct option_list defines, edit;
 };
 
 extern const char *const precompute_packets[]; // "auto", "pixels", "lights", NULL
+
+// Whether it is to be made in ranges of samples or by and by, which edit with --bounces can.
+static inline bool precompute_is_progressive(const struct precompute_values *v) {
+    return v->samples || v->seconds > 0 || v->checkpoint > 0 || v->resume;
+}
 
 // The scene as asked for.
 struct job_options precompute_job(const struct precompute_values *v,

@@ -76,18 +76,22 @@ int precompute_polynomial_run(const struct precompute_values *v, const char *com
                               const struct scene_define *defines) {
     struct progress progress;
     struct polynomial_report result;
+    const bool progressive = precompute_is_progressive(v);
     struct polynomial_options o = {
         .job = precompute_job(v, defines), .edit = v->edit.items, .edit_count = v->edit.count,
         .bounces = (uint32_t)v->bounces, .output = v->output,
         .storage = v->half ? TENSOR_BF16 : TENSOR_F32, .most_memory = v->memory * 1e9,
+        .keep = progressive, .resume = v->resume, .checkpoint = v->checkpoint,
         .dry_run = v->dry_run, .command = command, .version = RELUME_VERSION,
         .progress = v->quiet || v->dry_run ? NULL : show_progress, .user = &progress};
-    if (!parse_series(v->series, o.bounces, o.series) || !parse_tail(v->tail, &o.tail))
+    o.job.seconds = v->seconds;
+    if (!samples_parse(v->samples, o.job.samples) || !parse_series(v->series, o.bounces, o.series) || !parse_tail(v->tail, &o.tail))
         return EXIT_USAGE;
     progress_begin(&progress, "precompute", v->quiet);
     const bool done = precompute_polynomial(&o, &result);
     progress_end(&progress);
-    if (done)
+    const bool valid = done || (result.stopped && result.samples > 0);
+    if (valid)
         report(v, &result);
-    return done ? EXIT_DONE : EXIT_FAILED;
+    return done ? EXIT_DONE : valid ? EXIT_UNCONVERGED : EXIT_FAILED;
 }

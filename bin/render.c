@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume render: a picture from a scene file.
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -184,17 +183,6 @@ static int run_job(const struct values *v, const char *command, const struct sce
     return code;
 }
 
-// "A:B", or NULL: all.
-static bool parse_samples(const char *text, uint64_t samples[2]) {
-    char rest;
-    samples[0] = samples[1] = 0;
-    if (!text || (sscanf(text, "%" SCNu64 ":%" SCNu64 "%c", &samples[0], &samples[1], &rest) == 2 &&
-                  samples[1] > samples[0] && !strchr(text, '-')))
-        return true;
-    log_error("--samples %s: expected A:B, the first sample and the one after the last", text);
-    return false;
-}
-
 // Whether a name given as an option stands for something.
 static bool is_known(const struct registry *r, const char *name) {
     if (!name || registry_find(r, name))
@@ -210,7 +198,7 @@ static int run(const void *values, const char *command) {
     const struct values *v = values;
     uint32_t aovs;
     uint64_t samples[2];
-    if (!parse_samples(v->samples, samples) || !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
+    if (!samples_parse(v->samples, samples) || !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
         (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
         return EXIT_USAGE;
     if (v->space != SPACE_REC709 && (v->variance || v->noise > 0)) {

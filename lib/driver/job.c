@@ -33,6 +33,16 @@ struct scene_define *defines_parse(const struct option_list *texts, struct arena
     return d;
 }
 
+bool samples_parse(const char *text, uint64_t samples[2]) {
+    char rest;
+    samples[0] = samples[1] = 0;
+    if (!text || (sscanf(text, "%" SCNu64 ":%" SCNu64 "%c", &samples[0], &samples[1], &rest) == 2 &&
+                  samples[1] > samples[0] && !strchr(text, '-')))
+        return true;
+    log_error("--samples %s: expected A:B, the first sample and the one after the last", text);
+    return false;
+}
+
 static bool choose_crop(const struct job_options *o, const struct film_settings *s,
                         struct film_options *film) {
     const int *c = o->crop;

@@ -54,6 +54,9 @@ struct scene_registries job_registries(void);
 // Texts "NAME=VALUE" of -D as defines; the names live in the arena. NULL after an error message.
 struct scene_define *defines_parse(const struct option_list *texts, struct arena *arena);
 
+// The range "A:B" of --samples, or NULL: all, as 0 and 0. false after an error message.
+bool samples_parse(const char *text, uint64_t samples[2]);
+
 // Reads and builds. false after an error message, with nothing to close.
 bool job_open(struct job *job, const struct job_options *options);
 void job_close(struct job *job);

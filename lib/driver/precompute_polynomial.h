@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Precomputing how a picture depends on its materials, with all bounces: symbolic path tracing into a
 // tensor whose coefficients stand for curves of what is seen and for products of what lights it.
+//
+// Samples come in passes, each of which leaves a whole tensor in place of the one before. A tensor
+// that keeps its sums is its own checkpoint: whatever killed a run, what is there is valid and can be
+// gone on with. Sums are exact (sink/edit_sums.h), so passes cannot be told from the result.
 #pragma once
 
 #include "driver/edit_groups.h"
@@ -24,6 +28,9 @@ struct polynomial_options {
     const char *output;
     enum tensor_storage storage;
     double most_memory;         // bytes the sums of tiles may take; 0: half of what there is
+    bool keep;                  // the sums too, so that samples can be added
+    bool resume;                // go on from the output, if it is there
+    double checkpoint;          // seconds between tensors that replace one another; 0: only the last
     bool dry_run;               // only say what it would take
     const char *command, *version;
     void (*progress)(void *user, double done);

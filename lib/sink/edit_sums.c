@@ -24,6 +24,7 @@ struct edit_lane {
     size_t inside;
     uint32_t half;
     bool wanted;
+    double *cells; // of the object it sees first, once that is known
     struct deposit *deposits;
     size_t count, capacity;
 };
@@ -113,22 +114,29 @@ static void view_place(struct sink *s, int lane, int x, int y, uint32_t sample) 
 static void view_begin(struct sink *s, int lane) {
     struct edit_view *v = (void *)s;
     v->lanes[lane].count = 0;
+    v->lanes[lane].cells = NULL;
     chain_begin(&v->chains[lane]);
 }
 
 // The cells of what the lane sees first.
-static double *cells_of(const struct edit_view *v, const struct edit_lane *l, uint32_t object) {
+static double *cells_of(const struct edit_view *v, struct edit_lane *l, const struct chain *chain) {
+    if (l->cells)
+        return l->cells;
+    const struct edit_sums_options *o = &v->sums->options;
+    const uint32_t object =
+        chain->object == CHAIN_FIXED ? o->seen->object_count - 1 : (uint32_t)chain->object;
     const struct seen *seen = seen_find(v->tile, l->inside, object);
     assert(seen);
-    return v->cells + v->start[seen - v->tile->seen] +
-           l->half * cells_of_half(&v->sums->options, object);
+    return l->cells = v->cells + v->start[seen - v->tile->seen] + l->half * cells_of_half(o, object);
 }
 
 static double *fixed_cell(const struct edit_view *v, const struct edit_lane *l) {
     return v->cells + (l->inside * HALVES + l->half) * FIXED_CELLS;
 }
 
+// Cells are many and met at random: they are fetched while the path goes on.
 static void push(struct edit_lane *l, double *cell, spectrum value) {
+    __builtin_prefetch(cell, 1);
     mem_grow(&l->deposits, &l->capacity, l->count + 1, sizeof *l->deposits);
     l->deposits[l->count++] = (struct deposit){cell, value};
 }
@@ -140,8 +148,6 @@ static void view_add(struct sink *s, int lane, const struct contribution *c) {
     const struct chain *chain = &v->chains[lane];
     const struct marks *first = &chain->first[c->sampled ? chain->first_of_light : CHAIN_PATH];
     const struct marks *later = &chain->later[c->sampled ? chain->later_of_light : CHAIN_PATH];
-    const uint32_t object = chain->object == CHAIN_FIXED ? o->seen->object_count - 1
-                                                         : (uint32_t)chain->object;
     const spectrum value = c->weight * c->emission;
     if (!l->wanted)
         return;
@@ -149,7 +155,7 @@ static void view_add(struct sink *s, int lane, const struct contribution *c) {
         push(l, fixed_cell(v, l), value);
         return;
     }
-    double *cells = cells_of(v, l, object);
+    double *cells = cells_of(v, l, chain);
     for (uint32_t i = 0; i < first->count; i++)
         for (uint32_t j = 0; j < later->count; j++) {
             const struct mark *p = &first->mark[i], *g = &later->mark[j];
@@ -174,9 +180,12 @@ static void view_end(struct sink *s, int lane, float weight) {
             atomic_fetch_add(&v->sums->rejected, 1);
             return;
         }
+    const double shift = 0x1.8p52 * v->sums->options.quantum; // its unit in the last place: a quantum
     for (size_t i = 0; i < l->count; i++)
-        for (int k = 0; k < 3; k++)
-            l->deposits[i].cell[k] += (double)weight * (double)l->deposits[i].value[k];
+        for (int k = 0; k < 3; k++) {
+            const double d = (double)weight * (double)l->deposits[i].value[k];
+            l->deposits[i].cell[k] += (d + shift) - shift;
+        }
 }
 
 // ---- the tile -------------------------------------------------------------------------------
@@ -188,37 +197,96 @@ static void store(void *values, enum tensor_storage storage, size_t i, double va
         ((float *)values)[i] = (float)value;
 }
 
-// One pixel's coefficients of one term, from both halves' cells [place][group][3].
-static void store_term(const struct edit_sums_options *o, const struct edit_sums_object *object,
-                       uint32_t term, uint64_t at, const double *a, const double *b) {
-    const double scale = 1.0 / o->samples;
-    const uint64_t coefficients = (uint64_t)o->groups * object->bins[term];
-    const uint64_t tile = at / TENSOR_LANES * coefficients, lane = at % TENSOR_LANES;
-    for (uint32_t g = 0; g < o->groups; g++)
-        for (uint32_t j = 0; j < object->bins[term]; j++)
-            for (uint32_t k = 0; k < 3; k++) {
-                const size_t cell = 3 * ((size_t)(object->first[term] + j) * o->groups + g) + k;
-                const uint64_t i = ((tile + g * object->bins[term] + j) * 3 + k) * TENSOR_LANES + lane;
-                store(object->values[term], o->storage, i, scale * (a[cell] + b[cell]));
-                store(object->halves[term], o->storage, i, scale * (a[cell] - b[cell]));
-            }
+// Pixels of one object that follow each other in its list, in one tile of 64 of the file.
+struct run {
+    uint64_t at; // of the first
+    size_t count, half; // pixels; cells of one half
+    const double *cells[TENSOR_LANES];
+    uint32_t base[TENSOR_LANES]; // in the earlier tensor's list
+};
+
+struct block_row {
+    const struct edit_sums_object *object;
+    uint32_t term, channel;
+    size_t cell, coefficient;
+    uint64_t at; // of the run's first pixel, in the file's arrays
+};
+
+// What the earlier tensor has for a run's pixel.
+static double earlier(const struct block_row *w, const struct run *r, size_t n, uint32_t half) {
+    const struct tensor_block *b = w->object->base[w->term];
+    return b && r->base[n] != SEEN_END
+               ? b->sums[tensor_sum_at(b, r->base[n], w->coefficient, half, w->channel)]
+               : 0;
 }
 
-static void store_pixel(const struct edit_view *v, int x, int y) {
+// One coefficient and channel of a run.
+static void store_row(const struct edit_sums_options *o, const struct run *r,
+                      const struct block_row *w) {
+    const double scale = 1.0 / o->samples;
+    const struct edit_sums_object *object = w->object;
+    const struct tensor_block shape = {.coefficients = o->groups * object->bins[w->term],
+                                       .channels = 3};
+    double *sums = object->sums[w->term];
+    for (size_t n = 0; n < r->count; n++) {
+        const double a = r->cells[n][w->cell] + earlier(w, r, n, 0);
+        const double b = r->cells[n][r->half + w->cell] + earlier(w, r, n, 1);
+        store(object->values[w->term], o->storage, w->at + n, scale * (a + b));
+        store(object->halves[w->term], o->storage, w->at + n, scale * (a - b));
+        if (!sums)
+            continue;
+        sums[tensor_sum_at(&shape, r->at + n, w->coefficient, 0, w->channel)] = a;
+        sums[tensor_sum_at(&shape, r->at + n, w->coefficient, 1, w->channel)] = b;
+    }
+}
+
+// Cells lie [place][group][3] and are read in that order; the file has [group][bin][3][64].
+static void store_run(const struct edit_sums_options *o, const struct edit_sums_object *object,
+                      struct run *r) {
+    for (uint32_t t = 0; t < object->terms && r->count > 0; t++) {
+        const uint32_t bins = object->bins[t];
+        const uint64_t tile = r->at / TENSOR_LANES * o->groups * bins, lane = r->at % TENSOR_LANES;
+        for (uint32_t j = 0; j < bins && object->values[t]; j++)
+            for (uint32_t g = 0; g < o->groups; g++)
+                for (uint32_t k = 0; k < 3; k++) {
+                    const struct block_row row = {
+                        object, t, k, 3 * ((size_t)(object->first[t] + j) * o->groups + g) + k,
+                        (size_t)g * bins + j,
+                        ((tile + g * bins + j) * 3 + k) * TENSOR_LANES + lane};
+                    store_row(o, r, &row);
+                }
+    }
+    r->count = 0;
+}
+
+static void store_object(const struct edit_view *v, uint32_t object) {
+    const struct edit_sums_options *o = &v->sums->options;
+    struct run r = {.half = cells_of_half(o, object)};
+    for (int y = v->wanted.y0; y < v->wanted.y1; y++)
+        for (int x = v->wanted.x0; x < v->wanted.x1; x++) {
+            const struct seen *seen = seen_find(v->tile, tile_grid_inside(x, y), object);
+            if (!seen)
+                continue;
+            if (seen->at != r.at + r.count || seen->at % TENSOR_LANES == 0)
+                store_run(o, &o->objects[object], &r);
+            if (r.count == 0)
+                r.at = seen->at;
+            r.base[r.count] = seen->base;
+            r.cells[r.count++] = v->cells + v->start[seen - v->tile->seen];
+        }
+    store_run(o, &o->objects[object], &r);
+}
+
+static void store_fixed(const struct edit_view *v, int x, int y) {
     const struct edit_sums_options *o = &v->sums->options;
     const size_t inside = tile_grid_inside(x, y), plane = (size_t)o->width * (size_t)o->height;
     const double *a = v->cells + inside * HALVES * FIXED_CELLS, *b = a + FIXED_CELLS;
-    for (size_t k = 0; k < 3; k++)
-        o->fixed[k * plane + (size_t)y * (size_t)o->width + (size_t)x] =
-            (float)((a[k] + b[k]) / o->samples);
-    for (uint32_t i = v->tile->first[inside]; i != SEEN_END; i = v->tile->seen[i].next) {
-        const struct seen *seen = &v->tile->seen[i];
-        const struct edit_sums_object *object = &o->objects[seen->object];
-        a = v->cells + v->start[i];
-        b = a + cells_of_half(o, seen->object);
-        for (uint32_t t = 0; t < object->terms; t++)
-            if (object->values[t])
-                store_term(o, object, t, seen->at, a, b);
+    for (size_t k = 0; k < 3; k++) {
+        const size_t at = k * plane + (size_t)y * (size_t)o->width + (size_t)x;
+        const double sum = a[k] + b[k] + (o->fixed_base ? o->fixed_base[at] : 0);
+        o->fixed[at] = (float)(sum / o->samples);
+        if (o->fixed_sums)
+            o->fixed_sums[at] = sum;
     }
 }
 
@@ -226,7 +294,10 @@ static void view_close(struct sink *s) {
     struct edit_view *v = (void *)s;
     for (int y = v->wanted.y0; y < v->wanted.y1; y++)
         for (int x = v->wanted.x0; x < v->wanted.x1; x++)
-            store_pixel(v, x, y);
+            store_fixed(v, x, y);
+    for (uint32_t i = 0; i < v->sums->options.seen->object_count; i++)
+        if (v->sums->options.objects[i].places > 0)
+            store_object(v, i);
 }
 
 static void view_destroy(struct sink *s) {

@@ -6,6 +6,10 @@
 // group; for what shows no editable surface at all, one more, the fixed picture. All samples of a
 // tile are summed in one visit, in double, even and odd ones apart, and left as the floats of the
 // file. Where that takes too much memory a tile is visited in several strips.
+//
+// What a sample adds is rounded to a multiple of the quantum, 2^-30 of the picture or so. Sums of
+// fewer than 2^53 quanta are then exact, so that ranges of samples add up to the same bits in
+// whatever order and whatever pieces.
 #pragma once
 
 #include "sink/first_seen.h"
@@ -19,18 +23,24 @@ struct edit_sums_object {
     uint32_t first[EDIT_MOST_TERMS]; // place of a term's first bin
     uint32_t bins[EDIT_MOST_TERMS];
     void *values[EDIT_MOST_TERMS], *halves[EDIT_MOST_TERMS]; // [tiles][group, bin][3][64], or NULL
+    double *sums[EDIT_MOST_TERMS]; // as in the file, to be gone on with; or NULL
+    // The block of an earlier tensor that these samples are added to, with sums; or NULL.
+    const struct tensor_block *base[EDIT_MOST_TERMS];
 };
 
 struct edit_sums_options {
     struct sink_area area;
     int width, height;               // of the whole picture
-    uint32_t samples;                // a pixel gets in all: even
+    uint32_t samples;                // a pixel has got in all, with the earlier tensor's: even
+    double quantum;                  // a power of two; 0: none
     uint32_t groups;
     const struct edit_sums_object *objects; // those of `seen`, the last for fixed surfaces
     const struct first_seen *seen;   // of the same samples
     enum tensor_storage storage;
     uint32_t parts;                  // strips of a tile: 1, 2, 4, 8
     float *fixed;                    // 3 planes of the whole picture
+    double *fixed_sums;              // the same as sums, or NULL
+    const double *fixed_base;        // of the earlier tensor, or NULL
 };
 
 struct edit_sums;

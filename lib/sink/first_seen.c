@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sink/first_seen.h"
 
+#include <math.h>
+
 #include "base/mem.h"
 
 enum { LIST_LANES = 64 };
@@ -57,7 +59,7 @@ static struct seen *find_or_add(struct seen_tile *t, size_t inside, uint32_t obj
     }
     *link = (uint32_t)t->count; // before the array moves
     mem_grow(&t->seen, &t->capacity, t->count + 1, sizeof *t->seen);
-    t->seen[t->count] = (struct seen){.object = object, .next = SEEN_END};
+    t->seen[t->count] = (struct seen){.object = object, .next = SEEN_END, .base = SEEN_END};
     return &t->seen[t->count++];
 }
 
@@ -71,7 +73,7 @@ static void view_end(struct sink *s, int lane, float weight) {
                                                      : (uint32_t)c->object;
     struct seen *seen = find_or_add(v->tile, v->lanes[lane].inside, object);
     seen->samples++;
-    seen->view += (double)c->view;
+    seen->view += rint((double)c->view * 0x1p24) * 0x1p-24;
 }
 
 static void view_close(struct sink *s) {
@@ -88,7 +90,7 @@ static const struct sink_type view_type = {
 
 struct sink *first_seen_sink(void *first_seen) {
     struct seen_view *v = mem_array(1, sizeof *v);
-    v->sink = (struct sink){.type = &view_type, .chains = v->chains};
+    v->sink = (struct sink){.type = &view_type, .wants_surface = true, .chains = v->chains};
     v->all = first_seen;
     return &v->sink;
 }
@@ -114,19 +116,39 @@ void first_seen_destroy(struct first_seen *f) {
     for (uint32_t o = 0; o < f->object_count; o++) {
         mem_free(f->lists[o].pixels);
         mem_free(f->lists[o].view);
+        mem_free(f->lists[o].views);
     }
     mem_free(f->tiles);
     mem_free(f->lists);
     mem_free(f);
 }
 
+static struct seen_tile *tile_at(struct first_seen *f, int x, int y) {
+    const struct tile_grid *g = &f->grid;
+    return &f->tiles[(y / SINK_TILE - g->tile_y0) * g->tiles_x + x / SINK_TILE - g->tile_x0];
+}
+
+void first_seen_know(struct first_seen *f, uint32_t object, const uint32_t *pixels, uint64_t count,
+                     const double *views) {
+    const uint64_t lanes = (count + LIST_LANES - 1) / LIST_LANES * LIST_LANES;
+    for (uint64_t i = 0; i < count; i++) {
+        const int x = (int)pixels[i] % f->width, y = (int)pixels[i] / f->width;
+        struct seen *s = find_or_add(tile_at(f, x, y), tile_grid_inside(x, y), object);
+        s->base = (uint32_t)i;
+        s->view += views ? views[i] : 0;
+        s->samples += views ? (uint32_t)views[lanes + i] : 0;
+    }
+}
+
 static void list_pixel(struct first_seen *f, struct seen_tile *t, int x, int y) {
     for (uint32_t i = t->first[tile_grid_inside(x, y)]; i != SEEN_END; i = t->seen[i].next) {
         struct seen *s = &t->seen[i];
         struct seen_list *list = &f->lists[s->object];
-        s->at = (uint32_t)list->count;
-        list->pixels[list->count] = (uint32_t)(y * f->width + x);
-        list->view[list->count++] = (float)(s->view / s->samples);
+        s->at = (uint32_t)list->count++;
+        list->pixels[s->at] = (uint32_t)(y * f->width + x);
+        list->view[s->at] = s->samples ? (float)(s->view / s->samples) : 0;
+        list->views[s->at] = s->view;
+        list->views[list->lanes + s->at] = s->samples;
     }
 }
 
@@ -137,15 +159,14 @@ void first_seen_list(struct first_seen *f) {
         for (size_t i = 0; i < f->tiles[t].count; i++)
             counts[f->tiles[t].seen[i].object]++;
     for (uint32_t o = 0; o < f->object_count; o++) {
-        const uint64_t lanes = (counts[o] + LIST_LANES - 1) / LIST_LANES * LIST_LANES;
-        f->lists[o].pixels = mem_array(counts[o], sizeof *f->lists[o].pixels);
-        f->lists[o].view = mem_array(lanes, sizeof *f->lists[o].view);
+        struct seen_list *list = &f->lists[o];
+        list->lanes = (counts[o] + LIST_LANES - 1) / LIST_LANES * LIST_LANES;
+        list->pixels = mem_array(counts[o], sizeof *list->pixels);
+        list->view = mem_array(list->lanes, sizeof *list->view);
+        list->views = mem_array(2 * list->lanes, sizeof *list->views);
     }
-    for (uint32_t t = 0; t < tiles; t++) {
-        const struct sink_area a = tile_grid_area(&f->grid, t);
-        for (int y = a.y0; y < a.y1; y++)
-            for (int x = a.x0; x < a.x1; x++)
-                list_pixel(f, &f->tiles[t], x, y);
-    }
+    for (int y = f->grid.area.y0; y < f->grid.area.y1; y++)
+        for (int x = f->grid.area.x0; x < f->grid.area.x1; x++)
+            list_pixel(f, tile_at(f, x, y), x, y);
     mem_free(counts);
 }

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "driver/polynomial_layout.h"
+
+#include <string.h>
+
+static const float some;
+static const double some_sums;
+
+// ---- the survey -------------------------------------------------------------------------------
+
+static struct sink_area area_of(const struct polynomial *p) {
+    const struct film_options *f = &p->job.film;
+    return (struct sink_area){f->x0, f->y0, f->x1, f->y1};
+}
+
+static bool survey(struct polynomial_layout *l, const struct polynomial_range *r) {
+    const struct polynomial *p = l->p;
+    struct tracer_options o = p->tracer;
+    o.response = &p->survey.response;
+    o.integrator = &integrator_first_hits;
+    l->seen = first_seen_create(area_of(p), p->job.scene->film.width, p->plan.count + 1);
+    struct tracer *t = tracer_create(&o, first_seen_sink, l->seen);
+    const bool whole =
+        tracer_run(t, 0, tile_grid_count(&l->seen->grid), r->first, r->end - r->first) &&
+        !(o.stop && *o.stop);
+    tracer_destroy(t);
+    return whole;
+}
+
+// ---- an earlier tensor --------------------------------------------------------------------------
+
+static const char *object_name(const struct polynomial *p, uint32_t object) {
+    return object < p->plan.count ? p->plan.objects[object].name : "";
+}
+
+// The block of a term (NULL: of the first that is there); NULL: it has none.
+static const struct tensor_block *find_block(const struct tensor *t, const char *object,
+                                             const char *term) {
+    for (uint32_t i = 0; t && i < t->block_count; i++)
+        if (strcmp(t->blocks[i].object, object) == 0 && (!term || strcmp(t->blocks[i].term, term) == 0))
+            return &t->blocks[i];
+    return NULL;
+}
+
+static void know_base(struct polynomial_layout *l, const struct tensor *base) {
+    for (uint32_t i = 0; i <= l->p->plan.count; i++) {
+        const char *name = object_name(l->p, i);
+        const double *views = NULL;
+        for (uint32_t k = 0; base && k < base->block_count; k++)
+            if (strcmp(base->blocks[k].object, name) == 0 && base->blocks[k].views)
+                views = base->blocks[k].views;
+        const struct tensor_block *b = find_block(base, name, NULL);
+        if (b)
+            first_seen_know(l->seen, i, b->pixels, b->pixel_count, views);
+    }
+}
+
+// ---- the blocks -------------------------------------------------------------------------------
+
+static void add_block(struct polynomial_layout *l, const struct polynomial_range *r,
+                      struct tensor_block b, uint32_t object, uint32_t term) {
+    struct edit_sums_object *o = &l->objects[object];
+    const struct seen_list *list = &l->seen->lists[object];
+    o->first[term] = o->places;
+    o->bins[term] = b.coefficients;
+    o->places += b.coefficients;
+    o->terms = term + 1;
+    o->base[term] = find_block(r->base, b.object, b.term);
+    b.groups = l->p->groups.count;
+    b.coefficients *= b.groups;
+    b.channels = CURVE_CHANNELS;
+    b.pixel_count = list->count;
+    b.pixels = list->pixels;
+    b.storage = r->storage;
+    b.halves = &some;
+    b.sums = r->keep_sums ? &some_sums : NULL;
+    b.views = b.view && r->keep_sums ? list->views : NULL;
+    l->owner[l->tensor.block_count][0] = object;
+    l->owner[l->tensor.block_count][1] = term;
+    l->blocks[l->tensor.block_count++] = b;
+}
+
+// What is not seen lights others only, and has no block; but samples to come may see it.
+static bool needs_block(const struct polynomial_layout *l, const struct polynomial_range *r,
+                        uint32_t object) {
+    return l->seen->lists[object].count > 0 || r->keep_sums;
+}
+
+static void make_blocks(struct polynomial_layout *l, const struct polynomial_range *r) {
+    const struct edit_plan *plan = &l->p->plan;
+    l->objects = mem_array(plan->count + 1, sizeof *l->objects);
+    l->blocks = mem_array(plan->count * FORM_TERMS + 1, sizeof *l->blocks);
+    l->owner = mem_array(plan->count * FORM_TERMS + 1, sizeof *l->owner);
+    for (uint32_t i = 0; i < plan->count; i++)
+        for (uint32_t t = 0; t < plan->objects[i].form->terms; t++) {
+            struct tensor_block b;
+            if (!needs_block(l, r, i))
+                continue;
+            edit_plan_block(plan, i, t, &b);
+            if (edit_term_has(&plan->objects[i].form->term[t], SLOT_O))
+                b.view = l->seen->lists[i].view;
+            add_block(l, r, b, i, t);
+        }
+    if (l->p->groups.count > 1 && needs_block(l, r, plan->count))
+        add_block(l, r, (struct tensor_block){.object = "", .term = "fixed", .coefficients = 1},
+                  plan->count, 0);
+}
+
+// Whether the earlier tensor has these blocks and no others.
+static bool fits(const struct polynomial_layout *l, const struct tensor *base) {
+    bool same = !base || (base->block_count == l->tensor.block_count && tensor_has_sums(base) &&
+                          base->width == l->tensor.width && base->height == l->tensor.height);
+    for (uint32_t i = 0; same && base && i < l->tensor.block_count; i++) {
+        const struct tensor_block *a = &l->blocks[i];
+        const struct tensor_block *b = l->objects[l->owner[i][0]].base[l->owner[i][1]];
+        same = b && a->coefficients == b->coefficients && a->groups == b->groups &&
+               a->axis_count == b->axis_count && !a->views == !b->views;
+        for (uint32_t k = 0; same && k < a->axis_count; k++)
+            same = strcmp(a->axes[k].name, b->axes[k].name) == 0 && a->axes[k].bins == b->axes[k].bins;
+    }
+    return same;
+}
+
+bool polynomial_layout_init(struct polynomial_layout *l, const struct polynomial *p,
+                            const struct polynomial_range *r) {
+    *l = (struct polynomial_layout){.p = p};
+    if (!survey(l, r))
+        return false;
+    know_base(l, r->base);
+    first_seen_list(l->seen);
+    l->tensor = (struct tensor){
+        .width = (uint32_t)p->job.scene->film.width, .height = (uint32_t)p->job.scene->film.height,
+        .fixed = &some, .fixed_sums = r->keep_sums ? &some_sums : NULL};
+    make_blocks(l, r);
+    l->tensor.blocks = l->blocks;
+    l->sums = (struct edit_sums_options){
+        .area = area_of(p), .width = (int)l->tensor.width, .height = (int)l->tensor.height,
+        .samples = r->before + r->end - r->first, .quantum = r->quantum, .groups = p->groups.count,
+        .objects = l->objects, .seen = l->seen, .storage = r->storage, .parts = 1,
+        .fixed_base = r->base ? r->base->fixed_sums : NULL};
+    return fits(l, r->base);
+}
+
+void polynomial_layout_finish(struct polynomial_layout *l) {
+    first_seen_destroy(l->seen);
+    mem_free(l->objects);
+    mem_free(l->blocks);
+    mem_free(l->owner);
+}
+
+void polynomial_layout_tie(struct polynomial_layout *l, struct tensor_writer *w) {
+    for (uint32_t i = 0; i < l->tensor.block_count; i++) {
+        struct edit_sums_object *o = &l->objects[l->owner[i][0]];
+        const uint32_t term = l->owner[i][1];
+        o->values[term] = tensor_values(w, i);
+        o->halves[term] = tensor_halves(w, i);
+        o->sums[term] = l->blocks[i].sums ? tensor_sums(w, i) : NULL;
+    }
+    l->sums.fixed = tensor_fixed(w);
+    l->sums.fixed_sums = l->tensor.fixed_sums ? tensor_fixed_sums(w) : NULL;
+}
+
+uint64_t polynomial_layout_bytes(const struct polynomial_layout *l) {
+    const bool keep = tensor_has_sums(&l->tensor);
+    uint64_t bytes = (uint64_t)l->tensor.width * l->tensor.height * (keep ? 36 : 12);
+    for (uint32_t i = 0; i < l->tensor.block_count; i++) {
+        const struct tensor_block *b = &l->blocks[i];
+        const uint64_t values = tensor_bytes(b) / tensor_value_size(b->storage);
+        bytes += 2 * tensor_bytes(b) + 4 * b->pixel_count + (keep ? 16 * values : 0);
+    }
+    return bytes;
+}
