@@ -107,6 +107,8 @@ static double marginal_pdf(const struct curve_marginal *m, struct angles *a,
     if (gamma > CURVE_END * (1 + 1e-12))
         return 0;
     const uint32_t i = basis_interval(m->basis, gamma, &t);
+    if (m->ends[i][0] == m->ends[i][1])
+        return m->ends[i][0];
     const double x = coordinate(kind, m->gamma.kind, gamma);
     const double width = m->edges[i + 1] - m->edges[i];
     t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;

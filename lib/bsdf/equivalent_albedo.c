@@ -69,7 +69,8 @@ static void point(uint32_t i, double u[DIMENSIONS]) {
     double step = 1;
     for (int d = 0; d < DIMENSIONS; d++) {
         step /= root;
-        u[d] = fmod(0.5 + step * (i + 1.0), 1);
+        const double x = 0.5 + step * (i + 1.0);
+        u[d] = x - floor(x);
     }
 }
 

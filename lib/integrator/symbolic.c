@@ -204,9 +204,11 @@ static const struct closure *resolve(const struct response *response,
     if (depth > 0)
         return resolve_later(self, chain, object, s, wo, ctx->stack);
     chain->object = object;
-    chain->view = (float)atan2(hypot((double)wo[0], (double)wo[1]), fabs((double)wo[2]));
-    if (self->survey)
+    if (self->survey) {
+        if (self->objects[object].knows_view)
+            chain->view = (float)atan2(hypot((double)wo[0], (double)wo[1]), fabs((double)wo[2]));
         return NULL;
+    }
     chain->first_of_light = CHAIN_LIGHT;
     return resolve_basis(&self->objects[object], chain->first, NULL, s, wo, ctx->stack);
 }
@@ -219,5 +221,7 @@ void symbolic_object_init(struct symbolic_object *o, const struct form *form, st
     *o = (struct symbolic_object){.form = form};
     for (uint32_t t = 0; t + 1 < form->terms; t++)
         o->first[t + 1] = o->first[t] + symbolic_places(form, t);
+    for (uint32_t t = 0; t < form->terms; t++)
+        o->knows_view |= form->term[t].slots[SLOT_O].gamma.kind != GAMMA_NONE;
     bin_sampler_init(&o->sampler, form, arena);
 }

@@ -19,6 +19,7 @@ struct symbolic_object {
     const struct form *form; // its curves, over the basis of the eye's hop
     const struct texture_ref *texture[FORM_TERMS];
     uint32_t first[FORM_TERMS]; // place of a term's first coefficient
+    bool knows_view;            // some term has a curve over theta_o
     struct bin_sampler sampler;
     const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
 };
@@ -45,7 +46,7 @@ static inline uint32_t symbolic_places(const struct form *f, uint32_t term) {
     return symbolic_bins(f, term, SLOT_A) * symbolic_bins(f, term, SLOT_B);
 }
 
-// Fills form, first and sampler; memory from the arena. The form must outlive it.
+// Fills form, first, knows_view and sampler; memory from the arena. The form must outlive it.
 void symbolic_object_init(struct symbolic_object *o, const struct form *form, struct arena *arena);
 
 // Fills s->response; the rest is the caller's.
