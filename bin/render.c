@@ -86,7 +86,7 @@ static const struct option_spec options[] = {
     {.name = "paths", .type = OPTION_FLAG, .offset = AT(paths),
      .help = "write direct/indirect x diffuse/glossy/specular layers"},
     {.name = "colour-space", .type = OPTION_CHOICE, .offset = AT(space), .argument = "NAME",
-     .help = "primaries of the picture: rec709, rec2020, acescg", .def = "rec709",
+     .help = "primaries of the picture: rec709, rec2020, acescg, aces2065-1", .def = "rec709",
      .choices = image_space_names},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
     {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume tonemap: a picture to look at.
+#include <math.h>
 #include <stdio.h>
 
 #include "base/log.h"
+#include "image/display.h"
 #include "image/false_colour.h"
 #include "image/tonemap.h"
 #include "subcommand.h"
@@ -10,7 +12,7 @@
 struct tonemap_options {
     const char *in, *out, *layer;
     double exposure, efficacy;
-    const char *range;
+    const char *range, *config, *display, *view, *from;
     int curve, quantity;
     bool linear;
 };
@@ -37,15 +39,44 @@ static bool map_quantity(const struct tonemap_options *o, struct image *rgb) {
     return good;
 }
 
+static void expose(struct image *rgb, double stops) {
+    const size_t n = (size_t)rgb->width * (size_t)rgb->height * (size_t)rgb->channels;
+    const float gain = (float)exp2(stops);
+    for (size_t i = 0; i < n; i++)
+        rgb->pixels[i] *= gain;
+}
+
+static bool has_view(const struct tonemap_options *o) {
+    return o->config || o->display || o->view || o->from;
+}
+
+static bool agrees(const struct tonemap_options *o) {
+    const bool other = o->quantity != QUANTITY_NONE || o->curve != TONE_SRGB;
+    if (has_view(o) && other)
+        log_error("a view of OpenColorIO is a curve of its own: expected no --curve and no "
+                  "--false-colour beside it");
+    return !(has_view(o) && other);
+}
+
+static bool map(const struct tonemap_options *o, struct image *rgb) {
+    if (o->quantity != QUANTITY_NONE)
+        return map_quantity(o, rgb);
+    if (!has_view(o)) {
+        tone_map(rgb, o->exposure, (enum tone_curve)o->curve);
+        return true;
+    }
+    expose(rgb, o->exposure);
+    return image_display(o->config, o->display, o->view, o->from, rgb);
+}
+
 static int run(const void *values, const char *command) {
     const struct tonemap_options *o = values;
     struct image im = {0}, rgb = {0};
     (void)command;
+    if (!agrees(o))
+        return EXIT_USAGE;
     bool good = image_read(o->in, &im) && image_layer_to_rgb(&im, o->layer, o->in, &rgb);
-    if (good && o->quantity == QUANTITY_NONE)
-        tone_map(&rgb, o->exposure, (enum tone_curve)o->curve);
-    else if (good)
-        good = map_quantity(o, &rgb);
+    good = good && map(o, &rgb);
     good = good && image_write_png(o->out, &rgb);
     image_finish(&im);
     image_finish(&rgb);
@@ -62,6 +93,16 @@ static const struct option_spec options[] = {
     {.name = "curve", .letter = 'c', .type = OPTION_CHOICE, .offset = AT(curve),
      .argument = "NAME", .help = "srgb clips at 1, filmic is the ACES fit of Narkowicz 2015",
      .def = "srgb", .choices = tone_curve_names},
+    {.name = "ocio", .type = OPTION_TEXT, .offset = AT(config), .argument = "CONFIG",
+     .help = "show a view of this OpenColorIO configuration; else of the variable OCIO\n"
+             "where --view or --display is given"},
+    {.name = "display", .type = OPTION_TEXT, .offset = AT(display), .argument = "NAME",
+     .help = "display of the configuration; else its default"},
+    {.name = "view", .type = OPTION_TEXT, .offset = AT(view), .argument = "NAME",
+     .help = "view of the display; else its default"},
+    {.name = "from", .type = OPTION_TEXT, .offset = AT(from), .argument = "SPACE",
+     .help = "the configuration's colour space or role of linear Rec.709, where it is\n"
+             "found neither by name nor by the role aces_interchange"},
     {.name = "layer", .letter = 'l', .type = OPTION_TEXT, .offset = AT(layer), .argument = "NAME",
      .help = "a layer such as albedo, or a channel such as Z; empty: the picture itself",
      .def = ""},
@@ -90,6 +131,8 @@ const struct subcommand subcommand_tonemap = {
     .options = {.options = options,
                 .arguments = arguments,
                 .examples = "  relume tonemap room.exr -o room.png --exposure 1.5 --curve filmic\n"
+                            "  relume tonemap room.exr -o room.png --ocio config.ocio --view "
+                            "Filmic\n"
                             "  relume tonemap room.exr -o albedo.png --layer albedo\n"
                             "  relume tonemap room.exr -o room.png --false-colour cd/m2 --range "
                             "1:1000\n"},

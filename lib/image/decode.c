@@ -38,7 +38,7 @@ enum {
 
 // What the child sends first; names, attributes and pixels follow, or the message.
 struct packet {
-    int32_t ok, unsupported, width, height, channels, attributes, bits, srgb;
+    int32_t ok, unsupported, absent, width, height, channels, attributes, bits, srgb;
     int32_t full_width, full_height, crop_x, crop_y;
 };
 
@@ -101,7 +101,7 @@ static bool write_all(int fd, const void *data, size_t size) {
 
 static void send_image(int fd, const struct image *im) {
     const struct packet head = {
-        1, 0, im->width, im->height, im->channels, im->attribute_count, im->bits, im->srgb_encoded,
+        1, 0, 0, im->width, im->height, im->channels, im->attribute_count, im->bits, im->srgb_encoded,
         im->full_width, im->full_height, im->crop_x, im->crop_y,
     };
     bool good = write_all(fd, &head, sizeof head) &&
@@ -151,7 +151,7 @@ static void child_main(int fd, struct decoder_input *in, image_decoder decode) {
     if (decode(in, &im)) {
         send_image(fd, &im);
     } else {
-        const struct packet head = {.unsupported = in->unsupported};
+        const struct packet head = {.unsupported = in->unsupported, .absent = in->absent};
         if (write_all(fd, &head, sizeof head))
             write_all(fd, in->message, sizeof in->message);
     }
@@ -213,6 +213,7 @@ static bool receive_image(int fd, struct decoder_input *in, struct image *im, do
         return false;
     if (!head.ok) {
         in->unsupported = head.unsupported;
+        in->absent = head.absent;
         read_all(fd, in->message, sizeof in->message, deadline);
         in->message[sizeof in->message - 1] = '\0';
         clean(in->message);
@@ -237,7 +238,9 @@ static bool receive_image(int fd, struct decoder_input *in, struct image *im, do
 
 // Says why there is no picture, given how the child ended.
 static void report(const struct decoder_input *in, int status, bool late) {
-    if (in->message[0])
+    if (in->message[0] && in->absent)
+        log_error("%s: %s", in->path, in->message);
+    else if (in->message[0])
         log_error("%s: cannot be read: %s", in->path, in->message);
     else if (late || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU))
         log_error("%s: cannot be read: decoding took longer than %.0f s", in->path,

@@ -18,8 +18,9 @@ struct decoder_input {
     const char *part; // of a file with several, by name; NULL: the first
     const void *data; // the file's bytes where they are in memory already; else NULL
     uint64_t file_size;
-    char message[512]; // why it failed, without the file's name
+    char message[4096]; // why it failed, without the file's name
     bool unsupported;  // sound as far as it was read, but this decoder lacks a part it needs
+    bool absent;       // sound, but without what was asked for
 };
 
 // Fills *im, or writes a message and returns false. Must not use log_error (it runs in the child).
@@ -30,6 +31,8 @@ bool oiio_decode(struct decoder_input *in, struct image *im);
 // Voxels as a picture of height times depth lines; attributes: depth, origin (index of the first
 // voxel) and indexToWorld (16 numbers of a matrix for columns, row by row).
 bool oiio_decode_voxels(struct decoder_input *in, struct image *im);
+// What a display is sent of a picture; in->data is a struct display_view (display.h).
+bool oiio_display(struct decoder_input *in, struct image *im);
 
 // Most bytes of pixels that a file of this size may hold: 768 MiB + 64 times its size.
 uint64_t decoder_pixel_limit(uint64_t file_size);

@@ -69,7 +69,7 @@ struct image_exr_options {
 bool image_write_exr(const char *path, const struct image *im,
                      const struct image_exr_options *options);
 // 8-bit sRGB PNG from linear RGB in channels 0-2 (1 or 2 channels: grey); values are clipped to
-// [0,1], NaN becomes 0. Atomic.
+// [0,1], NaN becomes 0. What is encoded for a display already (srgb_encoded) stays so. Atomic.
 bool image_write_png(const char *path, const struct image *im);
 
 // The linear Rec.709 picture (3 channels) of an image: its channels R G B, or Y, or the first ones;

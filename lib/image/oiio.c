@@ -13,11 +13,12 @@ static struct {
     pthread_once_t once;
     oiio_module_decode_function *decode;
     oiio_module_decode_function *decode_voxels;
+    oiio_module_decode_function *display;
     oiio_module_write_png_function *write_png;
     char error[512];
 } module = {.once = PTHREAD_ONCE_INIT}; // loaded once, constant from then on
 
-static const struct oiio_host host = {decoder_init_image, image_set_text};
+static const struct oiio_host host = {decoder_init_image, image_set_text, image_from_rec709};
 
 static void *open_module(void) {
     static const char *const places[] = {"../lib", "../lib/relume"};
@@ -35,15 +36,20 @@ static void *open_module(void) {
     return NULL;
 }
 
+static bool is_complete(void) {
+    return module.decode && module.decode_voxels && module.display && module.write_png;
+}
+
 static void load(void) {
     void *handle = open_module();
     if (handle) {
         module.decode = (oiio_module_decode_function *)dlsym(handle, "oiio_module_decode");
         module.decode_voxels =
             (oiio_module_decode_function *)dlsym(handle, "oiio_module_decode_voxels");
+        module.display = (oiio_module_decode_function *)dlsym(handle, "oiio_module_display");
         module.write_png = (oiio_module_write_png_function *)dlsym(handle, "oiio_module_write_png");
     }
-    if (module.decode && module.decode_voxels && module.write_png)
+    if (is_complete())
         return;
     const char *why = dlerror();
     if (!module.error[0])
@@ -52,7 +58,7 @@ static void load(void) {
 
 bool oiio_load(void) {
     pthread_once(&module.once, load);
-    if (module.decode && module.decode_voxels && module.write_png)
+    if (is_complete())
         return true;
     log_error("pictures other than EXR cannot be read or written: %s", module.error);
     return false;
@@ -66,7 +72,11 @@ bool oiio_decode_voxels(struct decoder_input *in, struct image *im) {
     return module.decode_voxels(&host, in, im);
 }
 
+bool oiio_display(struct decoder_input *in, struct image *im) {
+    return module.display(&host, in, im);
+}
+
 bool oiio_write_png(const char *path, const unsigned char *bytes, int width, int height,
-                    int channels, char *message, size_t n) {
-    return module.write_png(path, bytes, width, height, channels, message, n);
+                    int channels, bool srgb, char *message, size_t n) {
+    return module.write_png(path, bytes, width, height, channels, srgb, message, n);
 }

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // The only C++ file: OpenImageIO has no C interface. Built as a module (oiio.h says why).
+#include <OpenImageIO/color.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <string>
+#include <vector>
 
 extern "C" {
+#include "image/display.h"
 #include "image/oiio.h"
 }
 
 extern "C" oiio_module_decode_function oiio_module_decode;
 extern "C" oiio_module_decode_function oiio_module_decode_voxels;
+extern "C" oiio_module_decode_function oiio_module_display;
 extern "C" oiio_module_write_png_function oiio_module_write_png;
 
 static bool fail(struct decoder_input *in, const std::string &why) {
@@ -131,8 +137,135 @@ extern "C" bool oiio_module_decode_voxels(const struct oiio_host *host, struct d
     }
 }
 
+// ---- views of OpenColorIO -----------------------------------------------------------------------
+
+using names = std::vector<std::string>;
+
+static bool has(const names &all, const std::string &name) {
+    return std::find(all.begin(), all.end(), name) != all.end();
+}
+
+static std::string quoted(const names &all) {
+    std::string text;
+    for (const std::string &name : all)
+        text += (text.empty() ? "\"" : ", \"") + name + "\"";
+    return text;
+}
+
+static bool absent(struct decoder_input *in, const std::string &what) {
+    in->absent = true;
+    return fail(in, what);
+}
+
+static std::string list_views(const OIIO::ColorConfig &config) {
+    std::string text;
+    for (const std::string &display : config.getDisplayNames())
+        text += (text.empty() ? "\"" : "; \"") + display + "\" with the views " +
+                quoted(config.getViewNames(display));
+    return text;
+}
+
+// The default where none is asked for.
+static bool find_view(struct decoder_input *in, const OIIO::ColorConfig &config,
+                      const struct display_view *v, std::string &display, std::string &view) {
+    const char *standard = config.getDefaultDisplayName();
+    display = v->display ? v->display : standard ? standard : "";
+    if (!has(config.getDisplayNames(), display))
+        return absent(in, "has no display \"" + display + "\"; it has " + list_views(config));
+    standard = config.getDefaultViewName(display);
+    view = v->view ? v->view : standard ? standard : "";
+    if (!has(config.getViewNames(display), view))
+        return absent(in, "display \"" + display + "\" has no view \"" + view + "\"; there are " +
+                              list_views(config));
+    return true;
+}
+
+// The configuration's space of linear Rec.709 by one of the names that it goes by, else that of ACES
+// by its role, with `aces` set.
+static std::string find_linear(const OIIO::ColorConfig &config, bool &aces) {
+    static const char *const known[] = {
+        "Linear Rec.709 (sRGB)", "Linear Rec.709", "lin_rec709_srgb", "lin_rec709", "lin_srgb",
+        "Utility - Linear - sRGB", "Utility - Linear - Rec.709"};
+    names all = config.getColorSpaceNames();
+    for (const std::string &space : names(all)) {
+        const names aliases = config.getAliases(space);
+        all.insert(all.end(), aliases.begin(), aliases.end());
+    }
+    for (const char *name : known)
+        if (has(all, name))
+            return name;
+    const char *role = config.getColorSpaceNameByRole("aces_interchange");
+    aces = role != nullptr;
+    return role ? role : "";
+}
+
+static bool find_source(struct decoder_input *in, const OIIO::ColorConfig &config,
+                        const struct display_view *v, std::string &space, bool &aces) {
+    const std::string asked = v->from ? v->from : "";
+    space = v->from ? asked : find_linear(config, aces);
+    const char *role = v->from ? config.getColorSpaceNameByRole(asked) : nullptr;
+    const std::string all = quoted(config.getColorSpaceNames());
+    if (space.empty())
+        return absent(in, "does not say which of its colour spaces is linear Rec.709; --from SPACE "
+                          "does, of " + all);
+    if (v->from && !role && !has(config.getColorSpaceNames(), asked) &&
+        config.getAliases(asked).empty())
+        return absent(in, "has no colour space or role \"" + asked + "\"; it has " + all);
+    return true;
+}
+
+// No lookup table knows what to make of NaN, and none reaches beyond the range of half.
+static void tame(struct image *im) {
+    const size_t n = (size_t)im->width * (size_t)im->height * (size_t)im->channels;
+    for (size_t i = 0; i < n; i++) {
+        const float v = im->pixels[i];
+        im->pixels[i] = std::isnan(v) ? 0 : std::max(-65504.0f, std::min(v, 65504.0f));
+    }
+}
+
+static bool display_picture(const struct oiio_host *host, struct decoder_input *in,
+                            struct image *im) {
+    const auto *v = static_cast<const struct display_view *>(in->data);
+    std::string display, view, space;
+    bool aces = false;
+    OIIO::attribute("threads", 1);
+    const OIIO::ColorConfig config(v->config);
+    if (config.has_error())
+        return fail(in, const_cast<OIIO::ColorConfig &>(config).geterror());
+    if (!find_view(in, config, v, display, view) || !find_source(in, config, v, space, aces))
+        return false;
+    const auto processor = config.createDisplayTransform(
+        OIIO::string_view(display), OIIO::string_view(view), OIIO::string_view(space),
+        OIIO::string_view());
+    if (!processor)
+        return fail(in, const_cast<OIIO::ColorConfig &>(config).geterror());
+    const struct image *from = v->picture;
+    if (!host->init_image(in, im, from->width, from->height, 3))
+        return false;
+    const size_t bytes = (size_t)im->width * (size_t)im->height * 3 * sizeof(float);
+    std::memcpy(im->pixels, from->pixels, bytes);
+    tame(im);
+    if (aces)
+        host->from_rec709(im, SPACE_ACES);
+    processor->apply(im->pixels, im->width, im->height, 3, sizeof(float), 3 * sizeof(float),
+                     3 * (OIIO::stride_t)im->width * (OIIO::stride_t)sizeof(float));
+    im->srgb_encoded = true;
+    return true;
+}
+
+extern "C" bool oiio_module_display(const struct oiio_host *host, struct decoder_input *in,
+                                    struct image *im) {
+    try {
+        return display_picture(host, in, im);
+    } catch (const std::exception &e) {
+        return fail(in, e.what());
+    }
+}
+
+// ---- PNG ----------------------------------------------------------------------------------------
+
 static bool write_png(const char *path, const unsigned char *bytes, int width, int height,
-                      int channels, std::string &why) {
+                      int channels, bool srgb, std::string &why) {
     OIIO::attribute("threads", 1);
     auto output = OIIO::ImageOutput::create("png");
     if (!output) {
@@ -140,7 +273,8 @@ static bool write_png(const char *path, const unsigned char *bytes, int width, i
         return false;
     }
     OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
-    spec["oiio:ColorSpace"] = "sRGB";
+    if (srgb)
+        spec["oiio:ColorSpace"] = "sRGB";
     const bool good = output->open(path, spec) &&
                       output->write_image(OIIO::TypeDesc::UINT8, bytes) && output->close();
     if (!good)
@@ -149,11 +283,12 @@ static bool write_png(const char *path, const unsigned char *bytes, int width, i
 }
 
 extern "C" bool oiio_module_write_png(const char *path, const unsigned char *bytes, int width,
-                                      int height, int channels, char *message, size_t n) {
+                                      int height, int channels, bool srgb, char *message,
+                                      size_t n) {
     std::string why;
     bool good = false;
     try {
-        good = write_png(path, bytes, width, height, channels, why);
+        good = write_png(path, bytes, width, height, channels, srgb, why);
     } catch (const std::exception &e) {
         why = e.what();
     }

@@ -7,9 +7,9 @@
 #include "image/image.h"
 #include "image/oiio.h"
 
-static unsigned char encode(float v) {
+static unsigned char encode(float v, bool encoded) {
     const float clipped = v > 0 ? fminf(v, 1) : 0; // NaN becomes 0
-    return (unsigned char)(linear_to_srgb(clipped) * 255 + 0.5f);
+    return (unsigned char)((encoded ? clipped : linear_to_srgb(clipped)) * 255 + 0.5f);
 }
 
 bool image_write_png(const char *path, const struct image *im) {
@@ -21,9 +21,9 @@ bool image_write_png(const char *path, const struct image *im) {
     unsigned char *bytes = mem_array(count, out);
     for (size_t p = 0; p < count; p++)
         for (size_t c = 0; c < out; c++)
-            bytes[p * out + c] = encode(im->pixels[p * in + c]);
-    const bool written =
-        oiio_write_png(temp, bytes, im->width, im->height, (int)out, message, sizeof message);
+            bytes[p * out + c] = encode(im->pixels[p * in + c], im->srgb_encoded);
+    const bool written = oiio_write_png(temp, bytes, im->width, im->height, (int)out,
+                                        !im->srgb_encoded, message, sizeof message);
     mem_free(bytes);
     if (!written) {
         log_error("%s: cannot be written: %s", path, message);

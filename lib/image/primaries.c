@@ -5,14 +5,16 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const image_space_names[] = {"rec709", "rec2020", "acescg", NULL};
+const char *const image_space_names[] = {"rec709", "rec2020", "acescg", "aces2065-1", NULL};
 
-static const char *const long_names[] = {"linear Rec.709", "linear Rec.2020", "ACEScg"};
+static const char *const long_names[] = {"linear Rec.709", "linear Rec.2020", "ACEScg",
+                                         "ACES2065-1"};
 
 const struct primaries image_spaces[] = {
     {{{0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, {0.3127, 0.3290}}},
     {{{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, {0.3127, 0.3290}}},
     {{{0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, {0.32168, 0.33767}}},
+    {{{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, {0.32168, 0.33767}}},
 };
 
 static void multiply(double a[3][3], double b[3][3], double out[3][3]) {

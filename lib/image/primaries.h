@@ -11,6 +11,7 @@ enum image_space {
     SPACE_REC709,
     SPACE_REC2020, // ITU-R BT.2020
     SPACE_ACESCG,  // AP1, SMPTE ST 2065-1 white (Academy S-2014-004)
+    SPACE_ACES,    // AP0, ACES2065-1: the space of interchange (SMPTE ST 2065-1)
 };
 
 extern const char *const image_space_names[]; // NULL-terminated, in the order of enum image_space
