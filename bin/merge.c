@@ -58,6 +58,9 @@ static bool write_picture(const struct values *v, const struct film_union *u) {
 
 static void report(const struct values *v, const struct film_union *u) {
     const uint64_t samples = film_samples(u->film);
+    if (film_clamped(u->film) >= 0)
+        log_warn("a clamp removed %.3g %% of the picture's light (layer clamped)",
+                 100 * film_clamped(u->film));
     if (!v->quiet)
         log_info("%s: %zu parts, %" PRIu64 " samples per pixel", v->output, v->inputs.count, samples);
     if (v->json) {
@@ -67,6 +70,8 @@ static void report(const struct values *v, const struct film_union *u) {
         json_add_count(j, "samples", (int64_t)samples);
         if (film_noise(u->film) >= 0)
             json_add_number(j, "noise", film_noise(u->film));
+        if (film_clamped(u->film) >= 0)
+            json_add_number(j, "clamped_share", film_clamped(u->film));
         json_print(j, false);
         json_destroy(j);
     }

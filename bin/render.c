@@ -17,7 +17,7 @@ struct values {
     struct receiver receiver;
     const char *scene, *output, *integrator, *sampler, *aovs;
     int spp, size[2], crop[4], max_depth, seed, threads;
-    double seconds, noise, checkpoint, preview;
+    double seconds, noise, checkpoint, preview, clamp;
     int space;
     const char *samples, *cryptomatte;
     bool variance, light_groups, paths, half, lenient, quiet, json, resume, adaptive;
@@ -74,6 +74,11 @@ static const struct option_spec options[] = {
              "0: as the scene says"},
     {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
      .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
+    {.name = "clamp", .type = OPTION_NUMBER, .offset = AT(clamp), .argument = "X", .min = 0,
+     .max = 1e30, .def = "0",
+     .help = "most that one piece of indirect light may bring to a sample, as the mean of\n"
+             "R, G and B; 0: no limit. Cuts off fireflies and with them light: how much\n"
+             "is always said, and layer `clamped` shows where"},
     {.name = "aov", .type = OPTION_TEXT, .offset = AT(aovs), .argument = "LIST",
      .help = "layers of what is seen first: albedo,N,Ng,Z,P,uv,shape,instance"},
     {.name = "cryptomatte", .type = OPTION_TEXT, .offset = AT(cryptomatte), .argument = "LIST",
@@ -135,6 +140,8 @@ static int trace_and_write(const struct values *v, const char *command, struct j
         job_trace(job, film, &o.render);
         progress_end(&l->progress);
         o.rejected = film_rejected(film);
+        o.clamp = v->clamp;
+        o.clamped = film_clamped(film);
         written = checkpoint_finish(&l->checkpoint, film);
         written = checkpoint_picture(&l->checkpoint, film, &o.render) && written;
     }
@@ -164,6 +171,7 @@ static int run_job(const struct values *v, const char *command, const struct sce
         .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs, .cryptomatte = v->cryptomatte,
         .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
         .adaptive = v->adaptive,
+        .clamp = v->clamp,
         .samples = {samples[0], samples[1]}, .seconds = v->seconds, .noise = v->noise,
         .stop = stop_on_signals(), .progress = between_passes, .user = &listener,
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,

@@ -15,6 +15,9 @@ void render_report_warnings(const struct render_outcome *o) {
         log_warn("%" PRIu64 " of %" PRIu64 " paths met the cap of %d events and were cut: the "
                  "picture is too dark by what they would have brought", t->truncated, t->paths,
                  INTEGRATOR_MOST_EVENTS);
+    if (o->clamped >= 0)
+        log_warn("--clamp %g removed %.3g %% of the picture's light (layer clamped)", o->clamp,
+                 100 * o->clamped);
     if (o->overflows)
         log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
                  o->overflows);
@@ -47,6 +50,8 @@ void render_report_json(const struct job *job, const struct render_outcome *o) {
     json_add_count(j, "half_overflows", (int64_t)o->overflows);
     if (t->noise >= 0)
         json_add_number(j, "noise", t->noise);
+    if (o->clamped >= 0)
+        json_add_number(j, "clamped_share", o->clamped);
     json_print(j, false);
     json_destroy(j);
 }

@@ -8,6 +8,7 @@ struct render_outcome {
     const char *output;
     struct render_result render;
     uint64_t rejected, overflows;
+    double clamp, clamped; // limit; share of light it removed, negative: there is none
 };
 
 // What makes the picture worse than asked for.

@@ -76,6 +76,8 @@ static void add_film(struct json *film, const struct film_options *o) {
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
         json_add_bool(film, flags[i], *flag_of(&copy, i));
     json_add_count(film, "aovs", o->aovs);
+    if (o->clamp > 0)
+        json_add_number(film, "clamp", (double)o->clamp);
     struct json *groups = json_add_array(film, "light groups");
     for (uint32_t i = 0; i < o->group_count; i++)
         json_append_text(groups, o->group_names[i]);
@@ -187,6 +189,10 @@ bool film_head_options(const struct json *head, const char *path, struct film_op
                  read_map(head, width, height, o, arena);
     for (size_t i = 0; i < sizeof flags / sizeof *flags && sound; i++)
         sound = json_read_bool(json_get(film, flags[i]), flag_of(o, i));
+    double clamp = 0;
+    if (sound && json_get(film, "clamp"))
+        sound = json_read_number(json_get(film, "clamp"), &clamp) && clamp > 0 && clamp < 1e30;
+    o->clamp = (float)clamp;
     o->aovs = (uint32_t)aovs;
     if (!sound)
         log_error("%s: the head does not describe a picture of version %d", path, VERSION);
@@ -211,6 +217,7 @@ static void place_crop(const struct json *head, struct image *im) {
 
 void film_head_label(const struct json *head, const struct film *film, struct image *im) {
     const double noise = film_noise(film);
+    double clamp = 0;
     place_crop(head, im);
     image_set_text(im, "relume.command", json_text(json_get(head, "command")));
     image_set_text(im, "relume.version", json_text(json_get(head, "program")));
@@ -220,4 +227,9 @@ void film_head_label(const struct json *head, const struct film *film, struct im
     image_set_number(im, "relume.samples", (double)film_samples(film));
     if (noise >= 0)
         image_set_number(im, "relume.noise", noise);
+    if (film_clamped(film) >= 0) {
+        json_read_number(json_get(json_get(head, "film"), "clamp"), &clamp);
+        image_set_number(im, "relume.clamp", clamp);
+        image_set_number(im, "relume.clampedShare", film_clamped(film));
+    }
 }

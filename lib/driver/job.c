@@ -155,6 +155,7 @@ static bool prepare_sensor(struct job *job) {
 static bool prepare(struct job *job, const struct job_options *o) {
     struct scene *s = job->scene;
     job->film = (struct film_options){.alpha = s->film.alpha, .paths = o->paths,
+                                      .clamp = (float)o->clamp,
                                       .variance = o->variance || o->noise > 0};
     if ((o->aovs && !film_aovs_parse(o->aovs, &job->film.aovs)) ||
         (o->cryptomatte && !cryptomatte_parse(o->cryptomatte, &job->cryptomatte)) ||

@@ -22,6 +22,7 @@ struct job_options {
     int threads;
     const char *aovs;             // "albedo,N" or NULL
     bool variance, light_groups, paths;
+    double clamp;                 // of indirect light (sink/film.h); 0: none
     const char *cryptomatte;      // "object,material" or NULL
     bool adaptive;                // samples go where a pilot finds noise
     // Changes the scene between reading it and building the world; or NULL.

@@ -244,11 +244,23 @@ static uint32_t path_slot(const struct contribution *c) {
     return (c->depth == 1 ? PATH_DIRECT : PATH_INDIRECT) + kind;
 }
 
+// Cuts indirect light that is above the clamp; returns what it loses.
+static spectrum cut(const struct film *f, spectrum *value) {
+    const float grey = ((*value)[0] + (*value)[1] + (*value)[2]) / 3;
+    const spectrum whole = *value;
+    if (!(grey > f->options.clamp))
+        return (spectrum){0};
+    *value *= f->options.clamp / grey;
+    return whole - *value;
+}
+
 static void view_add(struct sink *s, int lane, const struct contribution *c) {
     struct film_view *v = (void *)s;
     const struct film_layout *l = &v->film->layout;
-    const spectrum value = c->weight * c->emission;
+    spectrum value = c->weight * c->emission;
     spectrum *slots = v->slots + (size_t)lane * l->slots;
+    if (l->clamp_slot != LAYOUT_NONE && c->depth > 1)
+        slots[l->clamp_slot] += cut(v->film, &value);
     if (l->beauty_slot != LAYOUT_NONE)
         slots[l->beauty_slot] += value;
     if (l->group_slot != LAYOUT_NONE)

@@ -32,6 +32,8 @@ struct film_options {
     bool alpha;
     bool variance;        // squared standard errors of the pixels, from replicates
     bool moments;         // second moments of single samples, as layer "m2"
+    float clamp;          // most that one piece of indirect light may bring, as the mean of R, G and
+                          // B; what is cut off is kept as layer "clamped". 0: no limit
     bool paths;           // direct/indirect x diffuse/glossy/specular layers
     uint32_t aovs;        // enum film_aov
     uint32_t group_count; // light group layers; 0: none. The last one takes the rest
@@ -87,6 +89,9 @@ uint64_t film_rejected(const struct film *f);
 // Noise of the picture so far: sqrt of the mean over pixels of SE^2 / (b^2 + 1e-3 mean(b)^2) with
 // b = (R + G + B) / 3; needs `variance` and two samples, else negative.
 double film_noise(const struct film *f);
+
+// Share of the picture's light (luminance) that the clamp has cut off; negative: there is no clamp.
+double film_clamped(const struct film *f);
 
 // The picture and its layers so far.
 bool film_image(const struct film *f, struct image *im);

@@ -9,6 +9,7 @@
 #include "math/vec.h"
 #include "sink/film_layout.h"
 
+static const double LUMINANCE[3] = {0.212671, 0.715160, 0.072169}; // of linear Rec.709
 static const double NOT_HIT_Z = 1e10; // depth of pixels that see nothing, as compositors expect
 
 static const char *const path_names[PATH_SLOTS] = {
@@ -94,6 +95,29 @@ double film_noise(const struct film *f) {
     return sqrt(mean_over_pixels(f, &mean));
 }
 
+double film_clamped(const struct film *f) {
+    const struct film_layout *l = film_get_layout(f);
+    const struct film_options *o = film_get_options(f);
+    double *sums, kept = 0, lost = 0;
+    if (l->clamp_slot == LAYOUT_NONE || film_samples(f) == 0)
+        return -1;
+    sums = mem_array(l->channels, sizeof *sums);
+    for (int y = o->y0; y < o->y1; y++)
+        for (int x = o->x0; x < o->x1; x++) {
+            double rgb[3];
+            struct film_counts n;
+            film_pixel(f, x, y, sums);
+            film_pixel_counts(f, x, y, &n);
+            pixel_colour(l, o, sums, 1.0 / (double)n.all, rgb);
+            for (uint32_t c = 0; c < 3; c++) {
+                kept += LUMINANCE[c] * rgb[c];
+                lost += LUMINANCE[c] * sums[3 * l->clamp_slot + c] / (double)n.all;
+            }
+        }
+    mem_free(sums);
+    return kept + lost > 0 ? lost / (kept + lost) : 0;
+}
+
 // ---- channels -----------------------------------------------------------------------------------
 
 struct writer {
@@ -167,6 +191,8 @@ static void put_pixel(struct writer *w, const struct film *f, const struct film_
         put_rgb(w, o->group_names[g], sums + 3 * (l->group_slot + g), scale);
     for (uint32_t i = 0; l->path_slot != LAYOUT_NONE && i < PATH_SLOTS; i++)
         put_rgb(w, path_names[i], sums + 3 * (l->path_slot + i), scale);
+    if (l->clamp_slot != LAYOUT_NONE)
+        put_rgb(w, "clamped", sums + 3 * l->clamp_slot, scale);
     if (l->moment_channel != LAYOUT_NONE)
         put_rgb(w, "m2", sums + l->moment_channel, scale);
     if (l->replicate_channel != LAYOUT_NONE) {

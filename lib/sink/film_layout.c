@@ -48,6 +48,7 @@ void film_layout_init(struct film_layout *l, const struct film_options *o) {
     l->beauty_slot = take(&slots, !o->group_count || o->variance || o->moments, 1);
     l->group_slot = take(&slots, o->group_count > 0, o->group_count);
     l->path_slot = take(&slots, o->paths, PATH_SLOTS);
+    l->clamp_slot = take(&slots, o->clamp > 0, 1);
     l->slots = slots;
     uint32_t channels = 3 * slots;
     l->replicate_channel = take(&channels, o->variance, 3 * FILM_REPLICATES);

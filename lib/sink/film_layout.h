@@ -15,6 +15,7 @@ enum { PATH_DIRECT = 0, PATH_INDIRECT = 3, PATH_EMISSION = 6, PATH_SLOTS = 7 };
 struct film_layout {
     uint32_t slots;
     uint32_t beauty_slot, group_slot, path_slot;
+    uint32_t clamp_slot; // what is cut off
     uint32_t channels; // doubles per pixel
     uint32_t replicate_channel, moment_channel, alpha_channel;
     uint32_t aov_channel; // first: number of samples that hit something

@@ -109,6 +109,34 @@ expect 0 "$relume" render "$scene" -o "$picture" --spp 1 --half -D radiance=1e6 
 near "$out" half_overflows $((16 * 12 * 3))
 contains "$err" "$((16 * 12 * 3)) values were beyond the range of half"
 
+# The clamp: nothing where nothing is above it, else as much as it says, in the picture as in JSON.
+make_scene clamp.xml '<shape type="sphere"><boolean name="flip_normals" value="true"/>
+<bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf><emitter type="area"/></shape>'
+clamp() {
+    expect 0 "$relume" render "$folder/clamp.xml" -o "$folder/$1.exr" --spp 64 --json "${@:2}"
+}
+clamp free
+[[ $err$out != *clamp* ]] || fail "a clamp is spoken of where there is none"
+clamp high --clamp 1000
+near "$out" clamped_share 0
+expect 0 "$relume" compare "$folder/free.exr" "$folder/high.exr" --fail-above mse=0
+clamp low --clamp 0.1
+contains "$err" "--clamp 0.1 removed"
+share=$(python3 -c 'import json, sys; print(json.loads(sys.argv[1])["clamped_share"])' "$out")
+expect 0 "$relume" info "$folder/low.exr" --json
+low=$out
+near "{\"share\": $(attribute "$low" relume.clampedShare)}" share "$share"
+near "{\"clamp\": $(attribute "$low" relume.clamp)}" clamp 0.1
+expect 0 "$relume" info "$folder/free.exr" --json
+python3 - "$low" "$out" "$share" <<'END' || fail "what is kept and what is cut off are not the whole"
+import json, sys
+low, free = ({c["name"]: c["mean"] for c in json.loads(a)["channels"]} for a in sys.argv[1:3])
+cut = low["clamped.G"]
+print(low["G"], cut, free["G"])
+good = cut > 0 and abs(low["G"] + cut - free["G"]) < 1e-5
+sys.exit(not (good and abs(cut / free["G"] - float(sys.argv[3])) < 1e-5))
+END
+
 # Mistakes in a scene name file, line and the nearest name; --lenient takes unknown parameters.
 make_scene bad.xml '<shape type="sphere"><float name="radios" value="1"/></shape>'
 expect 1 "$relume" render "$folder/bad.xml" -o "$picture"
