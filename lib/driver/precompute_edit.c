@@ -70,7 +70,10 @@ static bool open_scene(struct precompute *p) {
     job.edit_user = &c;
     if (!job_open(&p->job, &job))
         return false;
-    if (!c.failed && edit_plan_init(&p->plan, p->job.scene))
+    if (p->job.world->links)
+        log_error("%s: has lights that light some shapes only, which --direct does not do; leave out "
+                  "their `include` and `exclude`, or --direct", p->job.scene->path);
+    else if (!c.failed && edit_plan_init(&p->plan, p->job.scene))
         return true;
     job_close(&p->job);
     return false;

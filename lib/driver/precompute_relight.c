@@ -182,10 +182,24 @@ static void replace_environment(struct scene *s, void *user) {
     *(uint32_t *)user = at;
 }
 
+// What takes its place lights everything and is seen.
+static bool environment_is_plain(const struct relight_options *o, const struct world *w) {
+    for (uint32_t i = 0; i < w->infinite_count; i++) {
+        const struct world_light *l = &w->lights[w->infinite[i]];
+        if (!l->dark && !l->hidden)
+            continue;
+        log_error("--basis %s: the scene's environment is hidden from the camera or lights some shapes "
+                  "only, which --basis lights keeps and this one cannot", o->basis);
+        return false;
+    }
+    return true;
+}
+
 static bool open_jobs(const struct relight_options *o, struct basis *b, struct job *job) {
     if (!parse_basis(o->basis, b) || !job_open(job, &o->job))
         return false;
-    if (!set_weights(b, job)) {
+    if ((b->source.kind != SOURCE_LIGHTS && !environment_is_plain(o, job->world)) ||
+        !set_weights(b, job)) {
         job_close(job);
         return false;
     }

@@ -125,6 +125,8 @@ static void add_features(const struct job *job, const struct scene_summary *s, s
         {"media", w->media != NULL},
         {"grid-media", count_media(w, false) > 0},
         {"coloured-extinction", count_media(w, true) > 0},
+        {"camera-visibility", w->hides},
+        {"light-linking", w->links},
         {"recentring", s->recentred},
         {"alpha", job->film.alpha},
     };

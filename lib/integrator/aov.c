@@ -79,8 +79,9 @@ static bool find_solid(struct trace_context *ctx, int lane, const struct path_st
         passed = s->t;
         *ray = (struct ray){surface_offset(s, ray->d), ray->d, 0, INFINITY};
         ctx->rays++;
-        if (!accel_intersect(ctx->world->accel, ray, hit))
-            return false;
+        accel_intersect(ctx->world->accel, ray, hit);
+        if (ctx->world->hides)
+            world_see(ctx->world, ray, hit);
     }
     return false;
 }
@@ -95,6 +96,8 @@ static void trace_first_hits(struct trace_context *ctx, const struct path_start 
     ctx->paths += SINK_LANES;
     for (int i = 0; i < SINK_LANES; i++) {
         struct surface s;
+        if (ctx->world->hides)
+            world_see(ctx->world, &rays[i], &hits[i]);
         if (!find_solid(ctx, i, &starts[i], &rays[i], &hits[i], &s))
             continue;
         ctx->sink->type->covered(ctx->sink, i);

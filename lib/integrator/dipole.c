@@ -117,7 +117,7 @@ static void scatter(struct walker *w, const struct surface *s, vec3 side,
     w->beta *= b->weight;
     w->eta2 *= b->eta * b->eta;
     w->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, w->from.depth + 1,
-                                   first_lobe, side};
+                                   first_lobe, side, s->shape + 1};
     w->ray = (struct ray){surface_offset(s, wi), wi, 0, INFINITY};
     w->alive = !spectrum_is_black(w->beta);
     if (w->alive)
@@ -326,7 +326,10 @@ static void shade(struct walker *w, const struct accel_hit *hit) {
 static void step(struct walker *w) {
     struct accel_hit hit;
     w->ctx->rays++;
-    if (accel_intersect(w->ctx->world->accel, &w->ray, &hit)) {
+    accel_intersect(w->ctx->world->accel, &w->ray, &hit);
+    if (w->ctx->world->hides && w->from.depth == 0)
+        world_see(w->ctx->world, &w->ray, &hit);
+    if (hit.shape != SCENE_NONE) {
         shade(w, &hit);
         return;
     }

@@ -65,7 +65,7 @@ static void sample_material(const struct direct *d, struct trace_context *ctx, i
     const float ratio = (float)d->bsdf_samples / (float)(d->emitter_samples ? d->emitter_samples : 1);
     const struct path_origin from = {s->p, b.pdf_sa * ratio,
                                      b.lobe & LOBE_DELTA || d->emitter_samples == 0, 1, b.lobe,
-                                     side};
+                                     side, s->shape + 1};
     struct ray ray = {surface_offset(s, wi), wi, 0, INFINITY};
     beta *= b.weight / (float)d->bsdf_samples;
     for (int i = 0; i < 64 && !spectrum_is_black(beta); i++) {
@@ -98,7 +98,10 @@ static void trace_one(const struct direct *d, struct trace_context *ctx, int lan
         struct accel_hit hit;
         struct surface s;
         ctx->rays++;
-        if (!accel_intersect(ctx->world->accel, &ray, &hit)) {
+        accel_intersect(ctx->world->accel, &ray, &hit);
+        if (ctx->world->hides)
+            world_see(ctx->world, &ray, &hit);
+        if (hit.shape == SCENE_NONE) {
             if (!d->hide_emitters)
                 vertex_add_infinite(ctx, lane, ray.d, beta, &from);
             return;

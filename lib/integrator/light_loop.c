@@ -182,6 +182,10 @@ static void follow(struct light_loop *l, struct visit v, struct ray ray, const s
     struct accel_hit hit = *first;
     v.wo = -ray.d;
     for (int i = 0; i < MOST_SURFACES && hit.shape != SCENE_NONE; i++) {
+        if (w->hides)
+            world_see(w, &ray, &hit);
+        if (hit.shape == SCENE_NONE)
+            return;
         world_surface(w, &ray, &hit, &v.surface);
         add_visit(l, &v);
         const struct surface *s = &v.surface;

@@ -82,7 +82,7 @@ static void scatter(const struct path *p, struct lane *l, const struct surface *
     l->eta2 *= b->eta * b->eta;
     const uint32_t first_lobe = l->from.depth == 0 ? b->lobe : l->from.lobe;
     l->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, l->from.depth + 1,
-                                   first_lobe, side};
+                                   first_lobe, side, s->shape + 1};
     l->ray = (struct ray){surface_offset(s, wi), wi, 0, INFINITY};
     l->alive = !spectrum_is_black(l->beta);
     if (l->alive)
@@ -221,8 +221,8 @@ static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const 
 }
 
 // The next hits of a packet's lanes: the camera's rays together, later ones where that pays.
-static void find_hits(struct trace_context *ctx, const struct lane *lanes, const struct packet *p,
-                      bool camera, struct accel_hit *hits) {
+static void trace_hits(struct trace_context *ctx, const struct lane *lanes, const struct packet *p,
+                       bool camera, struct accel_hit *hits) {
     const struct accel *accel = ctx->world->accel;
     ctx->rays += (uint64_t)p->count;
     if (camera || accel_mixes_packets(accel) ||
@@ -238,6 +238,14 @@ static void find_hits(struct trace_context *ctx, const struct lane *lanes, const
     }
     for (int i = 0; i < p->count; i++)
         accel_intersect(accel, &lanes[p->lanes[i]].ray, &hits[p->lanes[i]]);
+}
+
+static void find_hits(struct trace_context *ctx, const struct lane *lanes, const struct packet *p,
+                      bool camera, struct accel_hit *hits) {
+    trace_hits(ctx, lanes, p, camera, hits);
+    for (int i = 0; ctx->world->hides && i < p->count; i++)
+        if (lanes[p->lanes[i]].from.depth == 0)
+            world_see(ctx->world, &lanes[p->lanes[i]].ray, &hits[p->lanes[i]]);
 }
 
 // Lanes by the kind of their material; 0: those that are shaded one by one.

@@ -144,6 +144,11 @@ static void light(const struct path *p, struct trace_context *ctx, struct vertic
     const wide share = wide_select(wide_mask_of(l.delta), wide_of(1), mis_weights(l.s.pdf_sa, pdf));
     const wide scale = share / l.s.pdf_sa;
     lit &= wide_bits((f.x != 0) | (f.y != 0) | (f.z != 0));
+    for (uint32_t left = ctx->world->links ? lit : 0; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        if (!world_links(ctx->world, l.light[i], v->hit[i]->shape))
+            lit &= ~(1u << i);
+    }
     if (p->strict_normals)
         lit &= wide_bits(wide_dot(l.s.wi, at->s.ng) * wide_dot(l.s.wi, at->s.frame.n) > 0);
     const struct wide3 weight = {f.x * scale * v->beta.x, f.y * scale * v->beta.y,
@@ -216,6 +221,7 @@ static uint32_t scatter(const struct path *p, struct vertices *v, uint32_t wante
         l->from.pdf_sa = b.pdf_sa[i];
         l->from.delta = false;
         l->from.depth = depth[i];
+        l->from.receiver = v->hit[i]->shape + 1;
         l->ray.tmin = 0;
         l->ray.tmax = INFINITY;
     }

@@ -23,7 +23,8 @@ static void add_delta_lights(struct trace_context *ctx, int lane, const struct s
         const struct world_light *light = &ctx->world->lights[i];
         struct light_sample l;
         float pdf;
-        if (!light->type->delta || !light->type->sample(light->data, s->p, (struct vec2){0.5f, 0.5f}, &l))
+        if (!light->type->delta || !world_links(ctx->world, i, s->shape) ||
+            !light->type->sample(light->data, s->p, (struct vec2){0.5f, 0.5f}, &l))
             continue;
         const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf);
         const struct wavelengths rgb = {0};
@@ -50,7 +51,10 @@ static void trace_one(const struct simple *p, struct trace_context *ctx, int lan
         }
         ctx->rays++;
         from.delta = true; // whatever is found counts in full
-        if (!accel_intersect(ctx->world->accel, &ray, &hit)) {
+        accel_intersect(ctx->world->accel, &ray, &hit);
+        if (ctx->world->hides && from.depth == 0)
+            world_see(ctx->world, &ray, &hit);
+        if (hit.shape == SCENE_NONE) {
             vertex_add_infinite(ctx, lane, ray.d, beta, &from);
             return;
         }
@@ -75,6 +79,7 @@ static void trace_one(const struct simple *p, struct trace_context *ctx, int lan
             from.lobe = from.depth ? from.lobe : b.lobe;
             from.depth++;
             from.p = s.p;
+            from.receiver = s.shape + 1;
         }
         ray = (struct ray){surface_offset(&s, wi), wi, 0, INFINITY};
     }

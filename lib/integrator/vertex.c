@@ -11,7 +11,7 @@ void vertex_add_emission(struct trace_context *ctx, int lane, const struct surfa
     const vec3 to_light = s->p - from->p;
     const struct light_hit hit = {d, length(to_light), s->ng, s->point.at};
     const spectrum emission = light->type->emission(light->data, &hit);
-    if (spectrum_is_black(emission))
+    if (spectrum_is_black(emission) || !world_links(ctx->world, index, from->receiver - 1))
         return;
     float mis = 1;
     if (!from->delta)
@@ -28,6 +28,9 @@ void vertex_add_infinite(struct trace_context *ctx, int lane, vec3 d, spectrum b
     for (uint32_t i = 0; i < ctx->world->infinite_count; i++) {
         const uint32_t index = ctx->world->infinite[i];
         const struct world_light *light = &ctx->world->lights[index];
+        if ((light->hidden && from->depth == 0) ||
+            !world_links(ctx->world, index, from->receiver - 1))
+            continue;
         const spectrum emission = light->type->emission(light->data, &hit);
         float mis = 1;
         if (!from->delta)
@@ -47,7 +50,8 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
     float pdf_bsdf;
     uint32_t index;
     struct light_sample l;
-    if (!world_sample_light(ctx->world, &place, u1, u2, &index, &l))
+    if (!world_sample_light(ctx->world, &place, u1, u2, &index, &l) ||
+        !world_links(ctx->world, index, s->shape))
         return;
     const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf_bsdf);
     if (spectrum_is_black(f) || (!l.late && spectrum_is_black(l.emission)))

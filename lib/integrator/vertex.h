@@ -20,6 +20,7 @@ struct path_origin {
     uint32_t depth;   // scattering events so far
     uint32_t lobe;    // of the first event
     vec3 n;           // as vertex_light_side gave it for the light sampling there
+    uint32_t receiver; // 1 + the shape that scattered there; 0: none, which all lights light
 };
 
 // The normal by which lights are chosen at a vertex, turned to the side of wo (local); zero where

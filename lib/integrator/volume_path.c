@@ -226,7 +226,7 @@ static void sample_light_from_surface(struct walker *w, const struct surface *s,
     struct light_sample l;
     uint32_t light;
     float pdf;
-    if (!sample_light(w, &place, &light, &l))
+    if (!sample_light(w, &place, &light, &l) || !world_links(w->ctx->world, light, s->shape))
         return;
     const vec3 wi = to_local(&s->point.frame, l.wi);
     if (w->p->strict_normals && !same_side(s, l.wi, wi))
@@ -252,7 +252,7 @@ static void scatter_at_surface(struct walker *w, const struct surface *s, vec3 s
     w->eta2 *= b->eta * b->eta;
     const uint32_t first_lobe = w->from.depth == 0 ? b->lobe : w->from.lobe;
     w->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, w->from.depth + 1,
-                                   first_lobe, side};
+                                   first_lobe, side, s->shape + 1};
     leave_surface(w, s, wi);
     const struct world_boundary *boundaries = s->shape == SCENE_NONE ? NULL : w->ctx->world->boundaries;
     if (w->alive)
@@ -312,7 +312,10 @@ static void step(struct walker *w) {
         t = medium_free_path(m, sampler_1d(draw(w, DRAW_DISTANCE)), &w->rng);
         w->ray.tmax = minf(clip, t + 2 * slack(w, t));
     }
-    const bool found = accel_intersect(w->ctx->world->accel, &w->ray, &hit);
+    accel_intersect(w->ctx->world->accel, &w->ray, &hit);
+    if (w->ctx->world->hides && w->from.depth == 0)
+        world_see(w->ctx->world, &w->ray, &hit);
+    const bool found = hit.shape != SCENE_NONE;
     if (m && fly(w, m, found ? hit.t : clip, t))
         return;
     if (!w->alive)

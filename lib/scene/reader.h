@@ -163,6 +163,8 @@ const char *node_take_value(struct reader *r, struct xml_node *node, const char 
 uint32_t medium_read(struct reader *r, struct xml_node *target, struct id_entry *entry);
 bool shape_read(struct reader *r, struct xml_node *node, struct id_entry *entry);
 bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape);
+// links.c: the lists of lights, when all shapes are known.
+bool links_resolve(struct reader *r);
 // Reads the mesh files of all shapes, recentres the scene and brings vertices into the world.
 bool meshes_load(struct reader *r);
 // shape: the one it stands in, or SCENE_NONE.

@@ -85,7 +85,7 @@ static bool read_tree(struct reader *r, struct xml_node *root) {
     for (size_t i = 0; i < r->jobs.count; i++) // after the names are known to be right
         if (!load_hash_file(r, LIST_AT(&r->jobs, struct mesh_job, i).path))
             return false;
-    return view_defaults(r) && meshes_load(r);
+    return links_resolve(r) && view_defaults(r) && meshes_load(r);
 }
 
 // The list's items in the scene's arena, with NULL when there are none.

@@ -30,6 +30,8 @@ struct shape {
     bool flip_normals;
     const struct object *bsdf;   // never NULL after reading
     uint32_t light;              // index into lights, or SCENE_NONE
+    const char *set;             // that it belongs to, for the lists of lights, or NULL
+    bool hidden;                 // from the rays of the sensor
     uint32_t group;              // shapegroup it belongs to, or SCENE_NONE: directly in the world
     uint32_t interior, exterior; // media behind and before it (normal outwards), or SCENE_NONE
 };
@@ -38,6 +40,7 @@ struct instance {
     uint32_t group;
     const char *name;
     struct transform to_world;
+    bool hidden; // from the rays of the sensor
 };
 
 // A light as it stands in the file. `shape` ties an area light to its shape.
@@ -46,6 +49,9 @@ struct scene_light {
     uint32_t shape; // or SCENE_NONE
     const char *name;  // id, else the shape's id, else "TYPE.N"
     const char *group; // light group it is summed under, or NULL: by itself
+    const char *include, *exclude; // shapes that it lights, or does not, as a list; or NULL
+    const uint8_t *dark; // by shape: 1 where it gives no light; NULL: it lights all
+    bool hidden;       // from the rays of the sensor; of infinite lights
 };
 
 struct film_settings {

@@ -8,7 +8,8 @@
 struct shape_data {
     const char *filename, *shape_name;
     int shape_index;
-    bool face_normals, flip_normals, flip_tex_coords;
+    bool face_normals, flip_normals, flip_tex_coords, visible_to_camera;
+    const char *set;
     struct transform to_world;
     vec3 point; // read again in double by read_point
     float radius;
@@ -18,7 +19,11 @@ struct shape_data {
 #define COMMON_PARAMS                                                                              \
     {"to_world", PARAM_TRANSFORM, FIELD(to_world), .def = "", .help = "object to world"},          \
         {"flip_normals", PARAM_BOOL, FIELD(flip_normals), .def = "false",                          \
-         .help = "turn the normals round"}
+         .help = "turn the normals round"},                                                        \
+        {"visible_to_camera", PARAM_BOOL, FIELD(visible_to_camera), .def = "true",                 \
+         .help = "false: rays of the sensor go through it, all others meet it"},                   \
+        {"group", PARAM_STRING, FIELD(set), .optional = true,                                      \
+         .help = "name under which lights include or exclude it, beside its id"}
 #define MESH_PARAMS(flip)                                                                          \
     COMMON_PARAMS,                                                                                 \
         {"filename", PARAM_FILE, FIELD(filename), .help = "the mesh"},                             \
@@ -215,8 +220,23 @@ const char *node_take_value(struct reader *r, struct xml_node *node, const char 
     return xml_get(node, key);
 }
 
+// "visible_to_camera" of a light: false hides the shape that it stands in, or the sky.
+static bool read_hidden(struct reader *r, struct xml_node *node, bool *hidden) {
+    const char *text = node_take_value(r, node, "visible_to_camera");
+    *hidden = text && strcmp(text, "false") == 0;
+    if (!text || *hidden || strcmp(text, "true") == 0)
+        return true;
+    log_error_at(node->at, "visible_to_camera is \"%s\", expected true or false", text);
+    return false;
+}
+
 bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape) {
     const char *group = node_take_value(r, node, "group");
+    const char *include = node_take_value(r, node, "include");
+    const char *exclude = node_take_value(r, node, "exclude");
+    bool hidden;
+    if (!read_hidden(r, node, &hidden))
+        return false;
     struct object *o = object_make(r, r->options->registries.lights, node, NULL, NULL);
     if (!o)
         return false;
@@ -226,6 +246,11 @@ bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape) {
     light->object = o;
     light->shape = shape;
     light->group = group;
+    light->include = include;
+    light->exclude = exclude;
+    light->hidden = hidden;
+    if (shape != SCENE_NONE)
+        LIST_AT(&r->shapes, struct shape, shape).hidden |= hidden;
     light->name = o->id && shape == SCENE_NONE ? o->id
                   : *shape_name               ? shape_name
                   : o->id                     ? o->id
@@ -320,6 +345,14 @@ static bool meter_read(struct reader *r, struct xml_node *node, uint32_t shape) 
     return true;
 }
 
+// The sensor's rays would be in a medium that they never entered.
+static bool may_be_hidden(const struct shape *s) {
+    const bool may = !s->hidden || (s->interior == SCENE_NONE && s->exterior == SCENE_NONE);
+    if (!may)
+        log_error_at(s->at, "a shape that bounds a medium cannot be hidden from the camera");
+    return may;
+}
+
 static bool make_shape(struct reader *r, struct xml_node *node, int type,
                        const struct entry *mesh_reader, uint32_t group) {
     const struct entry *e = type == MESH
@@ -334,6 +367,7 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
     const char *id = xml_get(node, "id");
     *s = (struct shape){.kind = SHAPE_MESH, .name = id ? id : "", .type = xml_get(node, "type"),
                         .at = node->at, .to_world = d.to_world, .flip_normals = d.flip_normals,
+                        .set = d.set, .hidden = !d.visible_to_camera,
                         .bsdf = contents.bsdf, .light = SCENE_NONE, .group = group,
                         .interior = contents.interior, .exterior = contents.exterior};
     const uint32_t index = (uint32_t)r->shapes.count - 1;
@@ -347,6 +381,8 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
         queue_mesh(r, &d, mesh_reader, e == &shape_types[OBJ]);
     else if (!place_quadric(node, type, &d, s))
         return false;
+    if (!may_be_hidden(s))
+        return false;
     if (!s->bsdf)
         s->bsdf = default_bsdf(r, default_kind(node, &contents), node->at);
     if (!s->bsdf || (contents.sensor && !meter_read(r, contents.sensor, index)))
@@ -359,7 +395,8 @@ static bool make_shape(struct reader *r, struct xml_node *node, int type,
         return false;
     }
     s->light = (uint32_t)r->lights.count;
-    return emitter_read(r, contents.emitter, index);
+    return emitter_read(r, contents.emitter, index) &&
+           may_be_hidden(&LIST_AT(&r->shapes, struct shape, index));
 }
 
 static bool make_instance(struct reader *r, struct xml_node *node) {
@@ -374,7 +411,7 @@ static bool make_instance(struct reader *r, struct xml_node *node) {
     }
     const char *id = xml_get(node, "id");
     *LIST_ADD(&r->instances, struct instance) =
-        (struct instance){contents.group, id ? id : "", d.to_world};
+        (struct instance){contents.group, id ? id : "", d.to_world, !d.visible_to_camera};
     return true;
 }
 

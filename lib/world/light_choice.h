@@ -25,6 +25,8 @@ struct world_light {
     const void *data;
     float pmf;           // probability of being chosen where that does not depend on the place
     uint32_t first_part; // of all parts of the scene; its parts follow one another
+    const uint8_t *dark; // by shape: 1 where it gives no light; NULL: it lights all
+    bool hidden;         // from the rays of the sensor
     uint32_t parts;      // sampled each on its own; 0: the light is sampled as a whole
 };
 

@@ -20,13 +20,16 @@ static void init_shapes(struct world *w, const struct scene *s) {
             .indices = (const void *)m->indices, .positions = (const void *)m->positions,
             .normals = mesh_is_flat(m) ? NULL : (const void *)m->normals, .uvs = (const void *)m->uvs, .mesh = m,
             .bsdf = from->bsdf, .light = from->light, .kind = (uint8_t)from->kind,
-            .flip_normals = from->flip_normals};
+            .flip_normals = from->flip_normals, .hidden = from->hidden};
+        w->hides |= from->hidden;
         const uint32_t count = from->kind == SHAPE_MESH ? m->triangle_count : 1;
         const uint32_t lobes = count ? bsdf_lobes(from->bsdf) : 0;
         w->shadow_rays_may_pass |= (lobes & LOBE_NULL) != 0;
         w->tangents_matter |= (lobes & LOBE_ANISOTROPIC) != 0;
         primitives += count;
     }
+    for (uint32_t i = 0; i < s->instance_count; i++)
+        w->hides |= s->instances[i].hidden;
     w->packets_pay = primitives <= MOST_FOR_PACKETS && s->instance_count == 0;
 }
 
@@ -94,7 +97,9 @@ static bool prepare_lights(struct world *w, struct scene *s) {
         }
         if (type->prepare && !type->prepare(l->object, &info, &s->arena))
             return false;
-        w->lights[i] = (struct world_light){.type = type, .data = l->object->data};
+        w->lights[i] = (struct world_light){.type = type, .data = l->object->data, .dark = l->dark,
+                                            .hidden = l->hidden};
+        w->links |= l->dark != NULL;
         if (type->infinite && !type->delta)
             w->infinite[w->infinite_count++] = i;
     }

@@ -27,7 +27,7 @@ struct world_shape {
     uint32_t light;             // or SCENE_NONE
     uint8_t kind;               // enum shape_kind
     uint8_t wide_kind;          // index of world.wide_kinds; 0: its points are shaded one by one
-    bool flip_normals : 1;
+    bool flip_normals : 1, hidden : 1; // from the rays of the sensor
     bool two_sided : 1, textured : 1; // of the wide material
     const void *wide_data;
 };
@@ -54,6 +54,8 @@ struct world {
     struct world_transform *quadrics;  // by shape; NULL: the scene has none
     struct world_transform *instances; // by instance
     bool shadow_rays_may_pass;  // some material lets rays straight through
+    bool hides;                 // something is hidden from the rays of the sensor
+    bool links;                 // some light does not light all shapes
     bool packets_pay;           // so few primitives that packets win whichever way the rays run
     bool tangents_matter;       // some material is anisotropic or perturbs its normal
     struct medium *media;       // index: as in the scene; NULL: the scene has none
@@ -88,6 +90,16 @@ static inline float world_light_pdf_sa(const struct world *w, uint32_t light,
                                        const struct light_place *at, const struct light_hit *hit) {
     return light_choice_pdf_sa(&w->choice, &w->lights[light], at, hit);
 }
+
+// Whether a light lights a shape; SCENE_NONE, which a meter or a point in a medium is: always.
+static inline bool world_links(const struct world *w, uint32_t light, uint32_t shape) {
+    const uint8_t *dark = w->lights[light].dark;
+    return !dark || shape == SCENE_NONE || !dark[shape];
+}
+
+// Takes the hit of a ray of the sensor on to the first surface that is not hidden from it. Distances
+// stay those from the ray's origin. Only where w->hides.
+void world_see(const struct world *w, const struct ray *ray, struct accel_hit *hit);
 
 // What a ray found, ready for shading.
 struct surface {
