@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "driver/convergence.h"
 #include "scene/summary.h"
 
 // How often each entry of a kind is used, as an object.
@@ -165,6 +166,7 @@ void scene_info_add(const struct job *job, struct json *out) {
     add_uses(&s, "volume", "volumes", out);
     add_features(job, &s, out);
     add_memory(job, &s, out);
+    convergence_add(job, out);
     json_add_text(out, "ray_tracing", accel_version());
     json_add_number(out, "load_seconds", job->load_seconds);
     json_add_number(out, "acceleration_seconds", job->world->accel_seconds);

@@ -73,4 +73,66 @@ for feature in textures instancing straight-through-shadow-rays tangents delta-l
     light-choice glossy-materials; do
     lists "$out" does_not_require $feature
 done
+
+# room NAME BODY: a floor and a wall that a camera looks at
+room() {
+    cat >"$folder/$1.xml" <<END
+<scene version="3.0.0">
+<sensor type="perspective"><float name="fov" value="60"/><transform name="to_world">
+<lookat origin="0,2,6" target="0,1,0" up="0,1,0"/></transform><film type="hdrfilm"/></sensor>
+<shape type="rectangle" id="floor"><transform name="to_world"><scale value="4"/>
+<rotate x="1" angle="-90"/></transform></shape>
+<shape type="rectangle" id="wall"><string name="group" value="walls"/><transform name="to_world">
+<scale value="4"/><translate z="-2"/></transform></shape>
+$2
+</scene>
+END
+}
+ball='<shape type="sphere"><point name="center" x="0" y="2" z="0"/>'
+bulb="$ball<float name='radius' value='0.5'/><bsdf type='dielectric'/></shape>"
+filament="$ball<float name='radius' value='0.02'/><emitter type='area'><rgb name='radiance' value='900'/></emitter></shape>"
+large="$ball<float name='radius' value='0.4'/><emitter type='area'><rgb name='radiance' value='9'/></emitter></shape>"
+point='<emitter type="point" id="lamp"><point name="position" x="0" y="2" z="0"/></emitter>'
+pane='<shape type="cube"><transform name="to_world"><scale x="9" y="0.05" z="9"/><translate y="5"/></transform><bsdf type="dielectric"/></shape>'
+sun='<emitter type="directional"><vector name="direction" x="0.3" y="-1" z="-0.3"/></emitter>'
+sky='<emitter type="constant"/>'
+side='<emitter type="point"><point name="position" x="-2" y="2" z="1"/></emitter>'
+mirror='<shape type="sphere"><point name="center" x="1" y="1" z="0"/><bsdf type="conductor"/></shape>'
+
+# troubles NUMBER WORDS BODY: `info` warns of so many lights, with these words
+troubles() {
+    room room "$3"
+    expect 0 "$relume" info "$folder/room.xml" --json
+    python3 -c 'import json, sys; sys.exit(len(json.loads(sys.argv[1])["will_not_converge"]) != int(sys.argv[2]))' \
+        "$out" "$1" || fail "not $1 lights that will not converge: $err"
+    contains "$err" "$2"
+}
+troubles 1 'converge slowly' "$bulb$filament"
+troubles 1 'will not find the light of "lamp"' "$bulb$point"
+troubles 1 'smooth glass' "$pane$sun"
+troubles 1 'none of it' "$mirror<emitter type='point'><point name='position' x='0' y='2' z='-9'/></emitter>$sky"
+troubles 0 '' "$bulb$large"    # found by one direction in a few
+troubles 0 '' "$pane$sky"      # the sky is everywhere
+troubles 0 '' "$filament"      # no glass
+troubles 0 '' "$bulb$side$sky" # beside the glass
+troubles 0 '' "${bulb/dielectric/thindielectric}$point"
+
+# Lists of what lights light, and what the camera does not see.
+room linked "<emitter type='point'><string name='exclude' value='floor, walls'/></emitter>"
+expect 0 "$relume" info "$folder/linked.xml" --json
+lists "$out" requires light-linking
+lists "$out" does_not_require camera-visibility
+room linked "<emitter type='point'><string name='exclude' value='flor'/></emitter>"
+expect 1 "$relume" info "$folder/linked.xml"
+contains "$err" '"flor"'
+room linked "<emitter type='point'><string name='exclude' value='floor'/><string name='include' value='walls'/></emitter>"
+expect 1 "$relume" info "$folder/linked.xml"
+contains "$err" "not both"
+hidden="$ball<boolean name='visible_to_camera' value='false'/>"
+room hidden "$hidden</shape>$sky"
+expect 0 "$relume" info "$folder/hidden.xml" --json
+lists "$out" requires camera-visibility
+room hidden "$hidden<medium name='interior' type='homogeneous'/></shape>$sky"
+expect 1 "$relume" info "$folder/hidden.xml"
+contains "$err" "hidden from the camera"
 finish
