@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume merge: the exact union of pictures that were rendered apart.
 #include "driver/merge.h"
+#include "driver/merge_matte.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -50,7 +51,8 @@ static bool write_picture(const struct values *v, const struct film_union *u) {
     bool written = film_image(u->film, &im);
     if (written) {
         film_head_label(u->head, u->film, &im);
-        written = image_write_exr(v->output, &im, &exr);
+        written = merge_mattes(v->inputs.items, v->inputs.count, &im) &&
+                  image_write_exr(v->output, &im, &exr);
     }
     image_finish(&im);
     return written;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/cryptomatte.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -84,6 +85,11 @@ static float id_of(const char *name) {
     return id;
 }
 
+// It begins with the first seven digits of the layer's hash.
+void cryptomatte_key(const char *layer, const char *what, char key[IMAGE_NAME_SIZE]) {
+    snprintf(key, IMAGE_NAME_SIZE, "cryptomatte/%.7x/%s", murmur3_32(layer, strlen(layer)) >> 4, what);
+}
+
 static void add_attributes(struct image *im, const char *layer, const struct naming *n) {
     char key[IMAGE_NAME_SIZE], hash[16];
     struct json *manifest = json_new_object();
@@ -100,23 +106,27 @@ static void add_attributes(struct image *im, const char *layer, const struct nam
                                       {"hash", "MurmurHash3_32"},
                                       {"conversion", "uint32_to_float32"},
                                       {"manifest", text}};
-    for (int i = 0; i < 4; i++) { // the key is the first seven digits of the layer's hash
-        snprintf(key, sizeof key, "cryptomatte/%.7x/%s", murmur3_32(layer, strlen(layer)) >> 4,
-                 values[i][0]);
+    for (int i = 0; i < 4; i++) {
+        cryptomatte_key(layer, values[i][0], key);
         image_set_text(im, key, values[i][1]);
     }
     mem_free(text);
     json_destroy(manifest);
 }
 
-static void add_channels(struct image *im, const char *layer, const struct matte *m,
-                         const struct naming *n, const struct sink_area *area, double samples) {
+void cryptomatte_add_channels(struct image *im, const char *layer) {
     static const char channels[4] = {'R', 'G', 'B', 'A'};
     const int first = im->channels;
     image_add_channels(im, 2 * MATTE_RANKS);
     for (int c = 0; c < 2 * MATTE_RANKS; c++)
         snprintf(im->channel_names[first + c], IMAGE_NAME_SIZE, "%s%02d.%c", layer, c / 4,
                  channels[c % 4]);
+}
+
+static void add_channels(struct image *im, const char *layer, const struct matte *m,
+                         const struct naming *n, const struct sink_area *area, double samples) {
+    const int first = im->channels;
+    cryptomatte_add_channels(im, layer);
     for (int y = area->y0; y < area->y1; y++)
         for (int x = area->x0; x < area->x1; x++) {
             const struct matte_pixel *p = matte_at(m, x, y);
@@ -158,6 +168,11 @@ static bool add_layer(const struct job *job, const struct kind *kind, uint64_t s
 }
 
 bool cryptomatte_add(const struct job *job, uint32_t kinds, uint64_t samples, struct image *im) {
+    char text[64];
+    snprintf(text, sizeof text, "%u %" PRIu64 " %" PRIu64, job->film.seed, job->film.first,
+             samples < CRYPTOMATTE_SAMPLES ? samples : (uint64_t)CRYPTOMATTE_SAMPLES);
+    if (kinds)
+        image_set_text(im, CRYPTOMATTE_SAMPLES_OF, text);
     for (int i = 0; i < KINDS; i++)
         if (kinds & kinds_known[i].bit && !add_layer(job, &kinds_known[i], samples, im))
             return false;

@@ -10,7 +10,15 @@
 
 enum { CRYPTOMATTE_OBJECT = 1, CRYPTOMATTE_MATERIAL = 2, CRYPTOMATTE_SAMPLES = 256 };
 
+// Attribute: seed, first sample and number of the samples that the layers are of.
+#define CRYPTOMATTE_SAMPLES_OF "relume.cryptomatteSamples"
+
 // Bits from "object,material"; false after an error message.
 bool cryptomatte_parse(const char *list, uint32_t *kinds);
 // Appends the layers to a picture of the job. false: stopped.
 bool cryptomatte_add(const struct job *job, uint32_t kinds, uint64_t samples, struct image *im);
+
+// The attribute of a layer that the specification calls so.
+void cryptomatte_key(const char *layer, const char *what, char key[IMAGE_NAME_SIZE]);
+// Appends the channels of a layer, black.
+void cryptomatte_add_channels(struct image *im, const char *layer);

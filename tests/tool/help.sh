@@ -196,6 +196,12 @@ cp "$materials/film.bsdf" . && "$relume" brdf diffuse --to gold.binary >log
 "$relume" precompute relight car.xml -o car.safetensors --basis pixels:32x16 --spp 64 --quiet
 cp "$materials/linear.safetensors" tea.safetensors
 cp "$materials/more.safetensors" .
+cat >config.ocio <<END
+ocio_profile_version: 1
+roles: {default: lin_rec709}
+displays: {Monitor: [!<View> {name: Filmic, colorspace: lin_rec709}]}
+colorspaces: [!<ColorSpace> {name: lin_rec709}]
+END
 echo '{"steps": [{"set": "cup.exponent=40"}]}' >session.json
 "$relume" render scene.xml -o big.exr --size 32x32 --quiet
 "$relume" render scene.xml -o room.exr --size 16x16 --aov albedo --quiet

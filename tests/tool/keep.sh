@@ -111,6 +111,34 @@ refused "no journal" a other
 expect 1 "$relume" render "$scene" -o "$folder/x.exr" --samples 100:250
 contains "$err" "128:256"
 
+# Cryptomatte layers are united with them, and told of where they cannot be. The clamp is summed.
+plain=("${options[@]}")
+options=(--quiet --cryptomatte "object,material" --clamp 0.2)
+render masked --spp 256
+for i in 0 1 2 3; do render "mask$i" --samples "$((64 * i)):$((64 * i + 64))"; done
+merged masks mask2 mask0 mask3 mask1
+same masked masks
+merged masks01 mask0 mask1
+merged masks mask3 masks01 mask2
+same masked masks
+render left --samples 0:64 --crop 0,0,20,37
+render right --samples 0:64 --crop 20,0,45,37
+merged masks right left
+render masked --spp 64
+same masked masks
+expect 0 "$relume" info "$folder/masks.exr" --json
+contains "$out" '"cryptomatte/3ae39a5/manifest"'
+contains "$out" '"relume.clampedShare"'
+options=(--quiet --clamp 0.2)
+render bare --samples 64:128
+expect 0 "$relume" merge "$folder/mask0.exr" "$folder/bare.exr" -o "$folder/masks.exr"
+contains "$err" "left out"
+contains "$err" "a clamp removed"
+options=(--quiet)
+render free --samples 64:128
+refused "film" mask0 free
+options=("${plain[@]}")
+
 # The line of the README, where GNU parallel is installed.
 if parallel --version 2>/dev/null | grep -q "GNU parallel"; then
     # shellcheck disable=SC2016 # the braces are parallel's, in Perl
