@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sums to a picture: means, layers, standard errors, noise.
-#include <math.h>
+// From sums to a picture: means, layers, standard errors.
 #include <stdio.h>
 #include <string.h>
 
@@ -44,55 +43,6 @@ static void pixel_colour(const struct film_layout *l, const struct film_options 
         for (uint32_t g = 0; g < count; g++)
             rgb[c] += sums[3 * (first + g) + (uint32_t)c] * scale;
     }
-}
-
-// Squared error of the grey value relative to b^2 + floor. The deviation of a replicate is divided by
-// what the others say of b: were it part of b itself, a rare bright sample would raise both, and hide.
-static double relative_error(const struct film_counts *n, const double *replicates, double floor) {
-    double sums[FILM_REPLICATES], all = 0, error = 0;
-    uint32_t used = 0;
-    for (uint32_t r = 0; r < FILM_REPLICATES; r++) {
-        sums[r] = (replicates[3 * r] + replicates[3 * r + 1] + replicates[3 * r + 2]) / 3;
-        all += sums[r];
-        used += n->replicate[r] > 0;
-    }
-    for (uint32_t r = 0; r < FILM_REPLICATES && used > 1; r++) {
-        if (!n->replicate[r])
-            continue;
-        const double d = sums[r] / (double)n->replicate[r] - all / (double)n->all;
-        const double b = (all - sums[r]) / (double)(n->all - n->replicate[r]);
-        const double scale = b * b + floor;
-        error += scale > 0 ? d * d / scale / ((double)used * (used - 1)) : 0;
-    }
-    return error;
-}
-
-// Mean of the grey values; or, where that is known, of the relative errors.
-static double mean_over_pixels(const struct film *f, const double *known_mean) {
-    const struct film_layout *l = film_get_layout(f);
-    const struct film_options *o = film_get_options(f);
-    const double pixels = (double)(o->x1 - o->x0) * (double)(o->y1 - o->y0);
-    double *sums = mem_array(l->channels, sizeof *sums), mean = 0;
-    for (int y = o->y0; y < o->y1; y++)
-        for (int x = o->x0; x < o->x1; x++) {
-            double rgb[3];
-            struct film_counts n;
-            film_pixel(f, x, y, sums);
-            film_pixel_counts(f, x, y, &n);
-            pixel_colour(l, o, sums, 1.0 / (double)n.all, rgb);
-            mean += known_mean ? relative_error(&n, sums + l->replicate_channel,
-                                                1e-3 * *known_mean * *known_mean) / pixels
-                               : (rgb[0] + rgb[1] + rgb[2]) / 3 / pixels;
-        }
-    mem_free(sums);
-    return mean;
-}
-
-double film_noise(const struct film *f) {
-    if (film_get_layout(f)->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
-        return -1;
-    const double mean = mean_over_pixels(f, NULL);
-    return sqrt(mean_over_pixels(f, &mean));
 }
 
 double film_clamped(const struct film *f) {
