@@ -15,9 +15,10 @@ static struct sink_area area_of(const struct polynomial *p) {
 
 static bool survey(struct polynomial_layout *l, const struct polynomial_range *r) {
     const struct polynomial *p = l->p;
+    const struct object plain = {.type = &integrator_survey.entry, .data = (void *)&p->survey};
     struct tracer_options o = p->tracer;
     o.response = &p->survey.response;
-    o.integrator = &integrator_first_hits;
+    o.integrator = p->job.world->shadow_rays_may_pass ? &integrator_first_hits : &plain;
     l->seen = first_seen_create(area_of(p), p->job.scene->film.width, p->plan.count + 1);
     struct tracer *t = tracer_create(&o, first_seen_sink, l->seen);
     const bool whole =

@@ -19,12 +19,24 @@ struct run {
     const struct polynomial_options *options;
     struct polynomial_report *report;
     struct polynomial_layout layout; // of the range that is worked on
-    double quantum;
+    double start, quantum;
     double *(*albedos)[FORM_TERMS];
     uint32_t first, end;             // samples that are asked for
 };
 
 // ---- the metadata -----------------------------------------------------------------------------
+
+static int threads_of(const struct run *r) {
+    return r->options->job.threads > 0 ? r->options->job.threads : thread_default_count();
+}
+
+static void find_albedo(void *run, size_t item, int worker) {
+    const struct run *r = run;
+    const size_t i = item / FORM_TERMS, t = item % FORM_TERMS;
+    (void)worker;
+    if (r->albedos[i][t])
+        equivalent_albedo(r->p->plan.objects[i].form, (uint32_t)t, r->albedos[i][t]);
+}
 
 // Equivalent albedos of all terms, for all passes.
 static void find_albedos(struct run *r) {
@@ -33,11 +45,11 @@ static void find_albedos(struct run *r) {
     for (uint32_t i = 0; i < p->plan.count; i++) {
         const struct form *f = p->plan.objects[i].form;
         for (uint32_t t = 0; t < f->terms; t++) {
-            const uint32_t n = CURVE_CHANNELS * symbolic_places(f, t);
+            const size_t n = CURVE_CHANNELS * (size_t)symbolic_places(f, t);
             r->albedos[i][t] = arena_alloc(&p->arena, n * sizeof *r->albedos[i][t]);
-            equivalent_albedo(f, t, r->albedos[i][t]);
         }
     }
+    thread_for(threads_of(r), p->plan.count * FORM_TERMS, find_albedo, r);
 }
 
 static void describe_albedos(const struct run *r, struct json *(*terms)[FORM_TERMS]) {
@@ -82,10 +94,6 @@ static struct json *describe(const struct run *r, uint32_t end) {
 }
 
 // ---- memory -----------------------------------------------------------------------------------
-
-static int threads_of(const struct run *r) {
-    return r->options->job.threads > 0 ? r->options->job.threads : thread_default_count();
-}
 
 // Cuts tiles into strips until the sums of all threads fit. false after an error message.
 static bool fit_memory(struct run *r) {
@@ -189,14 +197,14 @@ static uint32_t pass_length(const struct run *r, uint32_t done, uint32_t next, d
 
 // Passes from `next` on, each from the tensor that the one before has left.
 static bool run_passes(struct run *r, struct tensor_file *base, uint32_t next) {
-    const double start = time_seconds(), most = r->options->job.seconds;
+    const double most = r->options->job.seconds;
     const uint32_t from = next;
     bool done = true;
     while (done && next < r->end && !(next > r->first && most > 0 && r->report->seconds >= most)) {
         const uint32_t n = pass_length(r, next - from, next, r->report->seconds);
         done = write_pass(r, base ? tensor_get(base) : NULL, next, next + n);
         next += done ? n : 0;
-        r->report->seconds = time_seconds() - start;
+        r->report->seconds = time_seconds() - r->start;
         tensor_close(base);
         base = done && next < r->end ? tensor_open(r->options->output) : NULL;
         done = done && (base || next >= r->end);
@@ -249,7 +257,7 @@ bool precompute_polynomial(const struct polynomial_options *o, struct polynomial
     if (!polynomial_open(&p, o))
         return false;
     const struct render_options *render = &p.job.render;
-    struct run r = {.p = &p, .options = o, .report = report, .first = (uint32_t)p.job.film.first,
+    struct run r = {.start = time_seconds(), .p = &p, .options = o, .report = report, .first = (uint32_t)p.job.film.first,
                     .end = (uint32_t)(render->end + 1) / 2 * 2};
     const bool done = run(&r);
     if (report->stopped && report->samples > 0)

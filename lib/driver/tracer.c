@@ -71,13 +71,16 @@ static void start_paths(const struct tracer *t, struct worker *w, int x0, int y0
                         struct batch *b) {
     const struct tracer_options *o = &t->options;
     struct sink *sink = w->ctx.sink;
+    const bool has_lens = sensor_type_of(o->sensor)->lens;
     for (int i = 0; i < SINK_LANES; i++) {
         const uint32_t lane = b->count++;
         const int x = x0 + i % PACKET_SIDE, y = y0 + i / PACKET_SIDE;
         struct sampler s = sampler_start(o->sampler, (uint32_t)x, (uint32_t)y, sample, o->spp,
                                          o->replicates, o->seed);
         const struct vec2 d = filter_sample(o->filter, sampler_2d(&s), &b->weights[lane]);
-        const struct vec2 lens = sampler_2d(&s);
+        const uint32_t dimensions = s.dimension; // of a point
+        const struct vec2 lens = has_lens ? sampler_2d(&s) : (struct vec2){0, 0};
+        s.dimension = 2 * dimensions;
         b->weights[lane] *= start_path(o, w, lane, film_point(x, d.x), film_point(y, d.y), lens,
                                        &b->starts[lane]);
         b->starts[lane].sampler = s;

@@ -49,5 +49,9 @@ static inline uint32_t symbolic_places(const struct form *f, uint32_t term) {
 // Fills form, first, knows_view and sampler; memory from the arena. The form must outlive it.
 void symbolic_object_init(struct symbolic_object *o, const struct form *form, struct arena *arena);
 
+// Finds what is seen first, for the survey: `data` of the integrator is the struct symbolic, which
+// must be the response, too.
+extern const struct integrator_type integrator_survey;
+
 // Fills s->response; the rest is the caller's.
 void symbolic_init(struct symbolic *s);

@@ -36,6 +36,7 @@ struct sensor_type {
     void (*ray)(const void *data, float x, float y, struct vec2 u, struct ray *ray);
     // Of a meter of irradiance, in place of `ray`: the point that film point (x, y) stands for.
     void (*place)(const void *data, float x, float y, struct sensor_place *place);
+    bool lens;     // rays depend on the lens point
     bool own_area; // what a pixel means does not reach beyond it: the filter is a box
 };
 

@@ -56,5 +56,5 @@ static void ray(const void *data, float x, float y, struct vec2 u, struct ray *o
 const struct sensor_type sensor_thinlens = {
     .entry = {.name = "thinlens", .help = "camera with depth of field (Kolb 1995)",
               .params = params, .size = sizeof(struct thinlens)},
-    .prepare = prepare, .ray = ray,
+    .prepare = prepare, .ray = ray, .lens = true,
 };

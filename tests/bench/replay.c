@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Products of tiles against the speed of memory: full products with 32 and 16 bits, an update of 30
-// terms, OpenCL and C, and plain reading, interleaved; medians. Then curve switching: either axis of
-// 128x128 coefficients contracted, for as many pixels as have the same bytes.
+// terms, OpenCL and C, and plain reading, interleaved; medians. Then, for as many pixels as have the
+// same bytes, curve switching: either axis of 128x128 coefficients contracted; and freezing: 84
+// products of albedos times 64 bins, contracted to the 4 powers of one albedo.
 //
 // usage: replay [PIXELS [COEFFICIENTS]]     (262144 and 256)
 #include "replay/replay.h"
@@ -106,59 +107,99 @@ static double time_update(const struct bench *b, struct replay *r) {
     return time_seconds() - start;
 }
 
-// ---- curve switching ------------------------------------------------------------------------
+// ---- curve switching and freezing -----------------------------------------------------------
 
-enum { SIDE = 128 };
+enum {
+    SIDE = 128,
+    OBJECTS = 6, BOUNCES = 4, BINS = 64, // of the Cornell box of Ben-Artzi 2007, table 6.1
+    POWERS = BOUNCES,
+};
+
+static struct contraction empty_map(uint32_t coefficients, uint32_t reduced) {
+    float *weight = mem_array(3 * (size_t)coefficients, sizeof *weight);
+    for (uint32_t i = 0; i < 3 * coefficients; i++)
+        weight[i] = 1 / (float)(i % SIDE + 1);
+    return (struct contraction){reduced, mem_array(reduced + 1, sizeof(uint32_t)),
+                                mem_array(coefficients, sizeof(uint32_t)), weight};
+}
 
 // The map that keeps axis `kept` of a matrix and sums the other up.
-static void make_contraction(int kept, struct contraction *c) {
-    uint32_t *start = mem_array(SIDE + 1, sizeof *start), *index = mem_array(SIDE * SIDE, sizeof *index);
-    float *weight = mem_array(3 * SIDE * SIDE, sizeof *weight);
+static struct contraction switching(int kept) {
+    const struct contraction c = empty_map(SIDE * SIDE, SIDE);
+    uint32_t *start = (uint32_t *)(uintptr_t)c.start, *index = (uint32_t *)(uintptr_t)c.index;
     for (uint32_t r = 0; r < SIDE; r++) {
         start[r + 1] = (r + 1) * SIDE;
         for (uint32_t k = 0; k < SIDE; k++)
             index[r * SIDE + k] = kept == 0 ? r * SIDE + k : k * SIDE + r;
     }
-    for (uint32_t i = 0; i < 3 * SIDE * SIDE; i++)
-        weight[i] = 1 / (float)(i % SIDE + 1);
-    *c = (struct contraction){SIDE, start, index, weight};
+    return c;
 }
 
-// Takes the values of a tensor as those of a smaller one with matrices.
-static void time_switching(const struct bench *b, double limit) {
-    const uint64_t pixels = b->block[TENSOR_F32].pixel_count * b->block[TENSOR_F32].coefficients /
-                            (SIDE * SIDE) / TENSOR_LANES * TENSOR_LANES;
+// Powers of the first object's albedo in all products of up to `left` more albedos, ascending from
+// `least`, as groups are numbered.
+static uint32_t list_powers(uint32_t least, uint32_t left, uint32_t power, uint32_t *powers) {
+    uint32_t n = 0;
+    powers[n++] = power;
+    for (uint32_t o = least; o < OBJECTS && left > 0; o++)
+        n += list_powers(o, left - 1, power + (o == 0), powers + n);
+    return n;
+}
+
+// The map that keeps one object's curve and the powers of its albedo.
+static struct contraction freezing(uint32_t *coefficients) {
+    uint32_t powers[OBJECTS * OBJECTS * OBJECTS], at = 0;
+    const uint32_t groups = list_powers(0, BOUNCES - 1, 0, powers);
+    const struct contraction c = empty_map(groups * BINS, POWERS * BINS);
+    uint32_t *start = (uint32_t *)(uintptr_t)c.start, *index = (uint32_t *)(uintptr_t)c.index;
+    for (uint32_t r = 0; r < POWERS * BINS; r++) {
+        for (uint32_t g = 0; g < groups; g++)
+            if (powers[g] == r / BINS)
+                index[at++] = g * BINS + r % BINS;
+        start[r + 1] = at;
+    }
+    *coefficients = groups * BINS;
+    return c;
+}
+
+// Takes the values of a tensor as those of a smaller one with more coefficients.
+static void time_contraction(const struct bench *b, double limit, const char *what,
+                             uint32_t coefficients, struct contraction c) {
     struct tensor_block block = b->block[TENSOR_F32];
-    block.pixel_count = pixels;
-    block.coefficients = SIDE * SIDE;
-    block.axis_count = 2;
-    block.axes[0].bins = block.axes[1].bins = SIDE;
-    const struct tensor t = {(uint32_t)pixels, 1, NULL, 1, &block, NULL};
+    block.pixel_count = block.pixel_count * block.coefficients / coefficients / TENSOR_LANES *
+                        TENSOR_LANES;
+    block.coefficients = coefficients;
+    block.axes[0].bins = coefficients;
+    const struct tensor t = {.width = (uint32_t)block.pixel_count, .height = 1, .block_count = 1,
+                             .blocks = &block};
     const double gb = (double)tensor_bytes(&block) * 1e-9;
-    float *out = mem_array(tensor_tiles(&block) * SIDE * 3 * TENSOR_LANES, sizeof *out);
+    float *out = mem_array(tensor_tiles(&block) * c.reduced * 3 * TENSOR_LANES, sizeof *out);
     for (int k = 0; k < 2; k++) {
         struct replay *r = replay_create(&t, &(struct replay_options){.no_device = k == 1});
-        for (int kept = 0; kept < 2; kept++) {
-            struct contraction c;
-            struct measured m;
-            make_contraction(kept, &c);
-            for (int i = -1; i < REPEATS; i++) {
-                const double start = time_seconds();
-                replay_contract(r, 0, &c, out);
-                if (i >= 0)
-                    m.times[i] = time_seconds() - start;
-            }
-            const double s = median(&m);
-            printf("%-12.12s curve switching, %d x %d coefficients, keeping axis %d: %.1f ms for %llu "
-                   "pixels, %.1f GB/s = %.2f of reading\n", replay_device(r), SIDE, SIDE, kept, s * 1e3,
-                   (unsigned long long)pixels, gb / s, gb / s / limit);
-            mem_free((void *)(uintptr_t)c.start);
-            mem_free((void *)(uintptr_t)c.index);
-            mem_free((void *)(uintptr_t)c.weight);
+        struct measured m;
+        for (int i = -1; i < REPEATS; i++) {
+            const double start = time_seconds();
+            replay_contract(r, 0, &c, out);
+            if (i >= 0)
+                m.times[i] = time_seconds() - start;
         }
+        const double s = median(&m);
+        printf("%-12.12s %s, %u coefficients to %u: %.1f ms for %llu pixels, %.1f GB/s = %.2f of "
+               "reading\n", replay_device(r), what, coefficients, c.reduced, s * 1e3,
+               (unsigned long long)block.pixel_count, gb / s, gb / s / limit);
         replay_destroy(r);
     }
     mem_free(out);
+    mem_free((void *)(uintptr_t)c.start);
+    mem_free((void *)(uintptr_t)c.index);
+    mem_free((void *)(uintptr_t)c.weight);
+}
+
+static void time_contractions(const struct bench *b, double limit) {
+    uint32_t coefficients;
+    const struct contraction frozen = freezing(&coefficients);
+    time_contraction(b, limit, "switching to the first curve", SIDE * SIDE, switching(0));
+    time_contraction(b, limit, "switching to the second curve", SIDE * SIDE, switching(1));
+    time_contraction(b, limit, "freezing all objects but one", coefficients, frozen);
 }
 
 int main(int argc, char **argv) {
@@ -189,7 +230,7 @@ int main(int argc, char **argv) {
                    "%.1f times faster\n", replay_device(b.replay[s][k]), s == TENSOR_F32 ? 32 : 16,
                    p * 1e3, gb / p, gb / p / ((double)bytes * 1e-9 / limit), TERMS, u * 1e3, p / u);
         }
-    time_switching(&b, (double)bytes * 1e-9 / limit);
+    time_contractions(&b, (double)bytes * 1e-9 / limit);
     for (int s = 0; s < KINDS; s++)
         for (int k = 0; k < 2; k++)
             replay_destroy(b.replay[s][k]);

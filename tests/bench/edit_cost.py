@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What a tensor costs: precomputing against path tracing of the same samples and bounces, in
+interleaved pairs, for the Cornell box with six editable objects, two of them glossy.
+
+usage: edit_cost.py BUILD [PAIRS [SIZE [SPP]]]
+"""
+import json
+import pathlib
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+
+GLOSSY = ('<bsdf type="editable" id="%s"><string name="model" value="blinnphong"/>'
+          '<string name="basis" value="box"/><rgb name="specular_reflectance" value="0.3"/>'
+          '<rgb name="diffuse_reflectance" value="0.4"/></bsdf>')
+
+
+def run(*command):
+    out = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return json.loads(out)
+
+
+def main():
+    root = pathlib.Path(__file__).resolve().parents[2]
+    build = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else root / "build")
+    pairs = int(sys.argv[2]) if len(sys.argv) > 2 else 5
+    size = sys.argv[3] if len(sys.argv) > 3 else "64x64"
+    spp = sys.argv[4] if len(sys.argv) > 4 else "1024"
+    relume = str(build / "bin/relume")
+    text = (root / "data/scenes/cornell-box/scene.xml").read_text()
+    for name in ("Floor", "BackWall"):
+        text = re.sub(r'<bsdf type="twosided" id="%s">.*?</bsdf>\s*</bsdf>' % name,
+                      GLOSSY % name, text, flags=re.S)
+    edit = [f"--edit={n}" for n in ("LeftWall", "RightWall", "ShortBox", "TallBox")]
+    with tempfile.TemporaryDirectory() as folder:
+        scene = folder + "/scene.xml"
+        pathlib.Path(scene).write_text(text)
+        same = ["--size", size, "--spp", spp, "--sampler", "sobol", "--quiet", "--json"]
+        ratios, plain, tensor = [], [], []
+        for _ in range(pairs):
+            a = run(relume, "render", scene, "-o", folder + "/a.exr", "--max-depth", "5", *same)
+            b = run(relume, "precompute", "edit", scene, "-o", folder + "/b.safetensors", *edit,
+                    "--bounces", "4", "--series", "64,1,1,1", "--tail", "none", *same)
+            plain.append(a["paths"] / a["seconds"])
+            tensor.append(b["paths"] / b["seconds"])
+            ratios.append(b["seconds"] / a["seconds"])
+        print(f"{size}, {spp} samples, {b['objects']} objects, {b['groups']} products, "
+              f"{b['file_bytes'] / 1e6:.0f} MB; medians of {pairs} pairs (lowest, highest)")
+        for name, values in (("picture, paths/s", plain), ("tensor, paths/s", tensor),
+                             ("time of the tensor / of the picture", ratios)):
+            print(f"{name}: {statistics.median(values):.4g} ({min(values):.4g}, {max(values):.4g})")
+
+
+if __name__ == "__main__":
+    main()
