@@ -9,6 +9,7 @@
 #include "driver/scene_info.h"
 #include "image/summary.h"
 #include "mesh/mesh.h"
+#include "scene_options.h"
 #include "subcommand.h"
 
 struct info_options {
@@ -138,10 +139,8 @@ static int run(const void *values, const char *command) {
 
 #define AT(member) offsetof(struct info_options, member)
 static const struct option_spec options[] = {
-    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
-    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
-     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_DEFINE(struct info_options, defines),
+    OPTION_LENIENT(struct info_options, lenient),
     OPTION_THREADS(struct info_options, threads),
     OPTION_JSON(struct info_options, json),
     OPTION_END,

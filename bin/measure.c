@@ -10,6 +10,7 @@
 #include "driver/measure.h"
 #include "driver/point_list.h"
 #include "driver/stop.h"
+#include "scene_options.h"
 #include "subcommand.h"
 
 enum { MOST_POINTS = 4096 }; // of a batch
@@ -47,20 +48,12 @@ static const struct option_spec options[] = {
      .max = 1e3,
      .help = "stop a point when its standard error is no more than X times its value\n"
              "(of the luminance); looked at every 1024 samples"},
-    {.name = "integrator", .type = OPTION_TEXT, .offset = AT(integrator), .argument = "NAME",
-     .help = "integrator in place of the scene's"},
-    {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
-     .help = "sampler in place of the scene's"},
-    {.name = "max-depth", .type = OPTION_INT, .offset = AT(max_depth), .argument = "N", .min = -1,
-     .max = 1000000, .def = "0",
-     .help = "most edges of a path as of a picture of the point: 2 direct light;\n"
-             "-1: no limit, 0: as the scene says"},
-    {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
-     .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
-    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
-    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
-     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_INTEGRATOR(struct values, integrator),
+    OPTION_SAMPLER(struct values, sampler),
+    OPTION_MAX_DEPTH(struct values, max_depth),
+    OPTION_SEED(struct values, seed),
+    OPTION_DEFINE(struct values, defines),
+    OPTION_LENIENT(struct values, lenient),
     OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),
     {.name = "json", .type = OPTION_FLAG, .offset = AT(json),

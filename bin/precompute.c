@@ -9,6 +9,7 @@
 #include "driver/precompute_relight.h"
 #include "driver/stop.h"
 #include "precompute.h"
+#include "scene_options.h"
 #include "subcommand.h"
 
 #define AT(member) offsetof(struct precompute_values, member)
@@ -66,32 +67,21 @@ static const struct option_spec options[] = {
      .help = "edit: go on from the output if it is there, also to more samples than\n"
              "before. These four keep exact sums in the tensor, which make it three\n"
              "times as large; `relume tensor requantise` drops them"},
-    {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
-     .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
-    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
-     .min = 0, .max = 65536, .help = "these pixels only; X1 and Y1 are just past the last"},
-    {.name = "texels", .type = OPTION_TEXT, .offset = AT(receiver.texels), .argument = "SHAPE",
-     .help = "irradiance on the texels of a mesh in place of the camera's picture"},
-    {.name = "vertices", .type = OPTION_TEXT, .offset = AT(receiver.vertices), .argument = "SHAPE",
-     .help = "irradiance at the vertices of a mesh, 256 to a row"},
-    {.name = "integrator", .type = OPTION_TEXT, .offset = AT(integrator), .argument = "NAME",
-     .help = "integrator in place of the scene's"},
-    {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
-     .help = "sampler in place of the scene's"},
-    {.name = "max-depth", .type = OPTION_INT, .offset = AT(max_depth), .argument = "N", .min = -1,
-     .max = 1000000, .def = "0", .help = "most edges of a path; 0: as the scene says"},
-    {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
-     .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
+    OPTION_SIZE(struct precompute_values, size),
+    OPTION_CROP(struct precompute_values, crop),
+    OPTION_RECEIVER(struct precompute_values, receiver),
+    OPTION_INTEGRATOR(struct precompute_values, integrator),
+    OPTION_SAMPLER(struct precompute_values, sampler),
+    OPTION_MAX_DEPTH(struct precompute_values, max_depth),
+    OPTION_SEED(struct precompute_values, seed),
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
      .help = "store 16 bits (bfloat16) a coefficient"},
     {.name = "memory", .type = OPTION_NUMBER, .offset = AT(memory), .argument = "GB", .min = 0,
      .max = 1e6, .def = "0", .help = "most memory for sums; 0: half of what there is"},
     {.name = "dry-run", .type = OPTION_FLAG, .offset = AT(dry_run),
      .help = "only say how many bytes and hours it would take"},
-    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
-    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
-     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_DEFINE(struct precompute_values, defines),
+    OPTION_LENIENT(struct precompute_values, lenient),
     OPTION_THREADS(struct precompute_values, threads),
     OPTION_QUIET(struct precompute_values, quiet),
     OPTION_JSON(struct precompute_values, json),

@@ -11,6 +11,7 @@
 #include "driver/ranks.h"
 #include "driver/stop.h"
 #include "render_report.h"
+#include "scene_options.h"
 #include "subcommand.h"
 
 struct values {
@@ -56,24 +57,13 @@ static const struct option_spec options[] = {
              "before; keeps the journal"},
     {.name = "preview", .type = OPTION_SECONDS, .offset = AT(preview), .argument = "SECONDS",
      .min = 0, .max = 1e9, .help = "every so often write the picture so far"},
-    {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
-     .min = 1, .max = 65536, .help = "size of the picture in place of the scene's"},
-    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
-     .min = 0, .max = 65536, .help = "render these pixels only; X1 and Y1 are just past the last"},
-    {.name = "texels", .type = OPTION_TEXT, .offset = AT(receiver.texels), .argument = "SHAPE",
-     .help = "irradiance on the texels of a mesh in place of the camera's picture"},
-    {.name = "vertices", .type = OPTION_TEXT, .offset = AT(receiver.vertices), .argument = "SHAPE",
-     .help = "irradiance at the vertices of a mesh, 256 to a row"},
-    {.name = "integrator", .type = OPTION_TEXT, .offset = AT(integrator), .argument = "NAME",
-     .help = "integrator in place of the scene's"},
-    {.name = "sampler", .type = OPTION_TEXT, .offset = AT(sampler), .argument = "NAME",
-     .help = "sampler in place of the scene's"},
-    {.name = "max-depth", .type = OPTION_INT, .offset = AT(max_depth), .argument = "N", .min = -1,
-     .max = 1000000, .def = "0",
-     .help = "most edges of a path: 1 emitters, 2 direct light; -1: no limit,\n"
-             "0: as the scene says"},
-    {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
-     .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
+    OPTION_SIZE(struct values, size),
+    OPTION_CROP(struct values, crop),
+    OPTION_RECEIVER(struct values, receiver),
+    OPTION_INTEGRATOR(struct values, integrator),
+    OPTION_SAMPLER(struct values, sampler),
+    OPTION_MAX_DEPTH(struct values, max_depth),
+    OPTION_SEED(struct values, seed),
     {.name = "clamp", .type = OPTION_NUMBER, .offset = AT(clamp), .argument = "X", .min = 0,
      .max = 1e30, .def = "0",
      .help = "most that one piece of indirect light may bring to a sample, as the mean of\n"
@@ -94,10 +84,8 @@ static const struct option_spec options[] = {
      .help = "primaries of the picture: rec709, rec2020, acescg, aces2065-1", .def = "rec709",
      .choices = image_space_names},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
-    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
-    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
-     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_DEFINE(struct values, defines),
+    OPTION_LENIENT(struct values, lenient),
     OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),
     OPTION_JSON(struct values, json),

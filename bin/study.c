@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "driver/stop.h"
 #include "driver/study_report.h"
+#include "scene_options.h"
 #include "subcommand.h"
 
 struct values {
@@ -42,14 +43,10 @@ static const struct option_spec options[] = {
     {.name = "target", .type = OPTION_TEXT, .offset = AT(target), .argument = "METRIC=X",
      .help = "name the cheapest setting with relmse, variance or bias2 at most X;\n"
              "exit 3 if there is none"},
-    {.name = "size", .type = OPTION_INTS, .values = 2, .offset = AT(size), .argument = "WxH",
-     .min = 1, .max = 65536, .help = "size of the pictures in place of the scene's"},
-    {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
-     .max = 2147483647, .def = "0", .help = "another seed gives independent noise"},
-    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
-    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
-     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_SIZE(struct values, size),
+    OPTION_SEED(struct values, seed),
+    OPTION_DEFINE(struct values, defines),
+    OPTION_LENIENT(struct values, lenient),
     OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),
     OPTION_JSON(struct values, json),

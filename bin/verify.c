@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "driver/stop.h"
+#include "scene_options.h"
 #include "subcommand.h"
 
 struct values {
@@ -32,10 +33,8 @@ static const struct option_spec options[] = {
      .help = "the truth has all bounces, not as many as the tensor"},
     {.name = "seed", .type = OPTION_INT, .offset = AT(seed), .argument = "N", .min = 0,
      .max = 1000000000, .def = "0", .help = "other pixels, other noise"},
-    {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
-     .argument = "NAME=VALUE", .help = "value of a scene parameter $NAME"},
-    {.name = "lenient", .type = OPTION_FLAG, .offset = AT(lenient),
-     .help = "unknown scene parameters warn instead of failing"},
+    OPTION_DEFINE(struct values, defines),
+    OPTION_LENIENT(struct values, lenient),
     {.name = "no-device", .type = OPTION_FLAG, .offset = AT(no_device), .help = "do without OpenCL"},
     OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),
