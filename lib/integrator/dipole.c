@@ -39,7 +39,7 @@ static const struct param params[] = {
     {"max_depth", PARAM_INT, offsetof(struct dipole_path, max_depth), .def = "-1", .min = -1,
      .max = 1e6, .unit = "",
      .help = "most edges of a path: 1 sees emitters, 2 adds direct light; -1: no limit"},
-    {"rr_depth", PARAM_INT, offsetof(struct dipole_path, rr_depth), .def = "5", .min = 1, .max = 1e6,
+    {"rr_depth", PARAM_INT, offsetof(struct dipole_path, rr_depth), .def = "3", .min = 1, .max = 1e6,
      .unit = "", .help = "edges after which Russian roulette may end a path"},
     {"hide_emitters", PARAM_BOOL, offsetof(struct dipole_path, hide_emitters), .def = "false",
      .unit = "", .help = "do not show lights that are seen directly"},
@@ -87,7 +87,7 @@ static bool may_scatter(const struct walker *w, uint32_t depth) {
 static void survive_roulette(struct walker *w) {
     if (w->from.depth < (uint32_t)w->p->rr_depth)
         return;
-    const float q = minf(spectrum_max(w->beta) * w->eta2, 0.95f);
+    const float q = roulette_chance(w->beta, w->eta2, 0.95f);
     if (sampler_1d(draw(w, DRAW_ROULETTE)) < q)
         w->beta /= q;
     else

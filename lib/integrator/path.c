@@ -11,7 +11,7 @@
 static const struct param params[] = {
     {"max_depth", PARAM_INT, offsetof(struct path, max_depth), .def = "-1", .min = -1, .max = 1e6,
      .unit = "", .help = "most edges of a path: 1 sees emitters, 2 adds direct light; -1: no limit"},
-    {"rr_depth", PARAM_INT, offsetof(struct path, rr_depth), .def = "5", .min = 1, .max = 1e6,
+    {"rr_depth", PARAM_INT, offsetof(struct path, rr_depth), .def = "3", .min = 1, .max = 1e6,
      .unit = "", .help = "edges after which Russian roulette may end a path"},
     {"hide_emitters", PARAM_BOOL, offsetof(struct path, hide_emitters), .def = "false", .unit = "",
      .help = "do not show lights that are seen directly"},
@@ -55,7 +55,7 @@ static void first_event(struct trace_context *ctx, int i, struct lane *l, const 
 static void survive_roulette(const struct path *p, struct lane *l) {
     if (l->from.depth < (uint32_t)p->rr_depth)
         return;
-    const float q = minf(spectrum_max(l->beta) * l->eta2, 0.95f);
+    const float q = roulette_chance(l->beta, l->eta2, 0.95f);
     if (sampler_1d(draw(l, DRAW_ROULETTE)) < q)
         l->beta /= q;
     else
@@ -301,10 +301,10 @@ static void settle(struct trace_context *ctx, struct wave *w, bool first) {
     uint32_t survivors = 0, tests = 0;
     for (uint32_t k = 0; k < w->count; k++) {
         const uint16_t i = w->alive[k];
-        if (w->lanes[i].shadow.pending)
-            pending[tests++] = i;
-        if (w->lanes[i].alive)
-            w->alive[survivors++] = i; // never ahead of what is read
+        pending[tests] = i; // no branches: nothing foretells them
+        tests += w->lanes[i].shadow.pending;
+        w->alive[survivors] = i; // never ahead of what is read
+        survivors += w->lanes[i].alive;
     }
     w->count = survivors;
     finish_shadows(ctx, w->lanes, pending, tests, first);

@@ -184,7 +184,7 @@ static uint32_t survive(const struct path *p, const struct vertices *v, uint32_t
     if (!(alive & wide_bits(plays)))
         return alive;
     const wide most = wide_max(beta->x, wide_max(beta->y, beta->z));
-    const wide q = wide_min(most * v->eta2, wide_of(0.95f));
+    const wide q = wide_min(2 * most * v->eta2, wide_of(0.95f)); // as roulette_chance
     wide u[2];
     draw(v, DRAW_ROULETTE, u);
     const wide divisor = wide_select(plays, q, wide_of(1));

@@ -128,7 +128,7 @@ static bool sample_light(struct walker *w, const struct light_place *place, uint
 static void survive_roulette(struct walker *w, bool in_media) {
     if (w->from.depth < (uint32_t)w->p->rr_depth)
         return;
-    const float q = minf(spectrum_max(throughput(w)) * w->eta2, in_media ? 1 : 0.95f);
+    const float q = roulette_chance(throughput(w), w->eta2, in_media ? 1 : 0.95f);
     if (q < 1 && !(sampler_1d(draw(w, DRAW_ROULETTE)) < q))
         w->alive = false;
     else

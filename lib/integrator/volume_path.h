@@ -18,7 +18,7 @@ struct volume_path {
     {"max_depth", PARAM_INT, offsetof(struct volume_path, max_depth), .def = "-1", .min = -1,      \
      .max = 1e6, .unit = "",                                                                       \
      .help = "most edges of a path: 1 sees emitters, 2 adds direct light; -1: no limit"},          \
-        {"rr_depth", PARAM_INT, offsetof(struct volume_path, rr_depth), .def = "5", .min = 1,      \
+        {"rr_depth", PARAM_INT, offsetof(struct volume_path, rr_depth), .def = "3", .min = 1,      \
          .max = 1e6, .unit = "", .help = "edges after which Russian roulette may end a path"},     \
         {"hide_emitters", PARAM_BOOL, offsetof(struct volume_path, hide_emitters), .def = "false", \
          .unit = "", .help = "do not show lights that are seen directly"},                         \
