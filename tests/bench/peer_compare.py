@@ -6,9 +6,11 @@
 
 Render time only (no loading, no compilation), medians; each ratio twice, of wall clock and of
 processor seconds (user and system, all threads; ours without loading), since other work on the
-machine stretches the first far more. Equal samples: both with their independent sampler. Equal
-error: time x relMSE, which is the time to a given relMSE where error falls as 1/N; relume with the
-better of sobol and lattice, Mitsuba llvm of independent and multijitter. The error is the mean of
+machine stretches the first far more. Equal samples: both with their independent sampler, and
+Russian roulette from the edge on that the file names; relume once more from its own default on,
+which takes fewer rays. Equal error: time x relMSE, which is the time to a given relMSE where error
+falls as 1/N; relume with its own roulette and the better of sobol and lattice, Mitsuba llvm of
+independent and multijitter (an earlier roulette does not help it). The error is the mean of
 (picture - A) (picture - B) over two independent references, so that their own noise drops out; both
 are Mitsuba's, each with 4 times the samples.
 """
@@ -46,9 +48,12 @@ def cpu_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
-def relume(args, scene, size, spp, sampler, seed, out):
+def relume(args, scene, size, spp, setting, seed, out):
+    sampler, *names = setting
     command = [args.relume, "render", scene, "-o", out, "--size", size, "--spp", str(spp),
                "--sampler", sampler, "--seed", str(seed), "--quiet", "--json"]
+    for name in names:
+        command += ["-D", name]
     start = cpu_seconds()
     result = subprocess.run(command, check=True, capture_output=True, text=True)
     return np.array([json.loads(result.stdout)["seconds"], cpu_seconds() - start])
@@ -68,7 +73,10 @@ def mitsuba(scene, variant, size, spp, sampler, seed, out, passes=1):
 
 PEERS = (("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"),
          ("llvm_ad_rgb", "multijitter"))
-SAMPLERS = ("sobol", "lattice")
+OWN_ROULETTE = "rr_depth=3"
+EQUAL = ("independent",)
+EARLIER = ("independent", OWN_ROULETTE)
+BEST = (("sobol", OWN_ROULETTE), ("lattice", OWN_ROULETTE))
 
 
 def measure(args, scene, size, spp, folder):
@@ -77,13 +85,13 @@ def measure(args, scene, size, spp, folder):
     for seed in (1001, 1002):
         mitsuba(scene, "llvm_ad_rgb", size, spp, "independent", seed, out, 4)
         references.append(read_rgb(out))
-    loading = min(relume(args, scene, "16x16", 1, "sobol", 0, out)[1] for _ in range(REPEATS))
+    loading = min(relume(args, scene, "16x16", 1, EQUAL, 0, out)[1] for _ in range(REPEATS))
     seconds, errors = {}, {}
     for repeat in range(REPEATS):
-        for sampler in ("independent", *SAMPLERS):
-            spent = relume(args, scene, size, spp, sampler, repeat, out)
-            seconds.setdefault(sampler, []).append(spent - [0, loading])
-            errors.setdefault(sampler, []).append(relmse(read_rgb(out), references))
+        for setting in (EQUAL, EARLIER, *BEST):
+            spent = relume(args, scene, size, spp, setting, repeat, out)
+            seconds.setdefault(setting, []).append(spent - [0, loading])
+            errors.setdefault(setting, []).append(relmse(read_rgb(out), references))
         for peer in PEERS[repeat > 0:]: # the scalar one takes long: once
             spent, more = mitsuba(scene, peer[0], size, spp, peer[1], repeat, out)
             seconds.setdefault(peer, []).append(spent)
@@ -96,16 +104,17 @@ def compare(args, scene, size, spp):
     with tempfile.TemporaryDirectory() as folder:
         seconds, errors = measure(args, scene, size, spp, folder)
     cost, theirs = (np.min([seconds[s] * errors[s] for s in keys], axis=0)
-                    for keys in (SAMPLERS, PEERS[1:]))
+                    for keys in (BEST, PEERS[1:]))
     width, height = map(int, size.split("x"))
-    ratios = (("scalar_rgb", seconds[PEERS[0]] / seconds["independent"]),
-              ("llvm", seconds[PEERS[1]] / seconds["independent"]),
+    ratios = (("scalar_rgb", seconds[PEERS[0]] / seconds[EQUAL]),
+              ("llvm", seconds[PEERS[1]] / seconds[EQUAL]),
+              ("scalar_rgb, our roulette", seconds[PEERS[0]] / seconds[EARLIER]),
+              ("llvm, our roulette", seconds[PEERS[1]] / seconds[EARLIER]),
               ("llvm to equal relMSE", theirs / cost))
     print(f"{Path(scene).parent.name} {size} {spp} spp: relume "
-          f"{width * height * spp / 1e6 / seconds['independent'][0]:.2f} Mpaths/s; times ours, wall "
+          f"{width * height * spp / 1e6 / seconds[EQUAL][0]:.2f} Mpaths/s; times ours, wall "
           "(processor): " + ", ".join(f"{name} {r[0]:.2f} ({r[1]:.2f})" for name, r in ratios) +
-          f"; relMSE relume {min(errors[s] for s in SAMPLERS):.3g}, "
-          f"llvm {min(errors[p] for p in PEERS[1:]):.3g}",
+          "; relMSE " + ", ".join(f"{' '.join(key)} {error:.3g}" for key, error in errors.items()),
           flush=True)
 
 
