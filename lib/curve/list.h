@@ -2,6 +2,7 @@
 // Models that can be turned into the editable form, one a line; each is curve/NAME.c.
 X(ashikhminfresnel)
 X(ashikhminratio)
+X(ashikhminratiofresnel)
 X(ashikhminshirley)
 X(blinnphong)
 X(cooktorrance)

@@ -250,6 +250,7 @@ static const struct subject subjects[] = {
     {&model_ashikhminshirley, ashikhmin, 1, 0},
     {&model_ashikhminfresnel, ashikhmin, 1, 0},
     {&model_ashikhminratio, ashikhmin, 1, 0},
+    {&model_ashikhminratiofresnel, ashikhmin, 1, 0},
     {&model_ward, ward, 1, 0},
     {&model_schlick, schlick, 1, 0},
     {&model_orennayar, orennayar, 1, 0},
