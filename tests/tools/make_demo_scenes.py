@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-# Makes the meshes and curves of data/scenes/teatray and data/scenes/earrings.
+# Makes the meshes and curves of data/scenes/teatray, earrings, vase, room and ring.
 #
 # usage: make_demo_scenes.py FOLDER   (data/scenes)
 import math
@@ -10,13 +10,15 @@ import sys
 
 
 def write_ply(path, vertices, faces):
-    head = ("ply\nformat binary_little_endian 1.0\nelement vertex %d\n"
-            "property float x\nproperty float y\nproperty float z\n"
-            "element face %d\nproperty list uchar ushort vertex_indices\nend_header\n")
+    """Vertices are (x, y, z) or (x, y, z, u, v)."""
+    names = "xyzuv"[:len(vertices[0])]
+    head = "ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % len(vertices)
+    head += "".join("property float %s\n" % name for name in names)
+    head += "element face %d\nproperty list uchar ushort vertex_indices\nend_header\n" % len(faces)
     with open(path, "wb") as f:
-        f.write((head % (len(vertices), len(faces))).encode())
+        f.write(head.encode())
         for v in vertices:
-            f.write(struct.pack("<3f", *v))
+            f.write(struct.pack("<%df" % len(names), *v))
         for t in faces:
             f.write(struct.pack("<B3H", 3, *t))
 
@@ -57,6 +59,25 @@ def tray():
                (3.0, 0.22), (3.05, 0.2), (3.05, 0.16), (3.0, 0.1), (2.9, -0.04), (2.8, -0.06),
                (1e-3, -0.06)]
     return revolve(profile, 96)
+
+
+def vase():
+    """With u around and v up, so that its tangents go round it."""
+    outer = [(0.02, 0), (0.3, 0), (0.36, 0.03), (0.44, 0.15), (0.52, 0.35), (0.55, 0.55), (0.52, 0.75),
+             (0.43, 0.95), (0.31, 1.12), (0.24, 1.26), (0.22, 1.38), (0.25, 1.48), (0.3, 1.54)]
+    profile = outer + [(r - 0.03, y) for r, y in reversed(outer[3:])]
+    columns = 64
+    vertices = [(r * math.cos(2 * math.pi * j / columns), y, r * math.sin(2 * math.pi * j / columns),
+                 j / columns, i / (len(profile) - 1))
+                for i, (r, y) in enumerate(profile) for j in range(columns + 1)]
+    return vertices, grid_faces(len(profile), columns + 1, False)
+
+
+def ring():
+    """A band with rounded edges."""
+    profile = [(0.94, 0.03), (0.94, 0.42), (0.95, 0.445), (0.97, 0.455), (0.99, 0.445), (1.0, 0.42),
+               (1.0, 0.03), (0.99, 0.005), (0.97, 0), (0.95, 0.005), (0.94, 0.03)]
+    return revolve([(r, y) for r, y in reversed(profile)], 128)
 
 
 def handle():
@@ -111,9 +132,39 @@ def velvet_side(t):
     return (v, v, v)
 
 
+# The fit of a shifted gamma distribution to the measured "red-fabric" (Bagher, Soler, Holzschuch 2012):
+# rho_s, alpha, p, f0 and f1 by channel.
+FABRIC = ((0.168669, 0.324447, 0.787411, 0.0718348, -0.0585917),
+          (0.0486346, 0.228455, 0.821197, 0.0644687, -0.0062547),
+          (0.040485, 0.109436, 0.279212, 0.0206123, -0.050402))
+
+
+def gamma_slopes(alpha, p):
+    """The density of squared slopes, with the integral 1."""
+    density = lambda x: math.exp(-(alpha * alpha + x) / alpha) / (alpha * alpha + x) ** p
+    step = 1e-3
+    whole = step * sum(density(step * (i + 0.5)) for i in range(20000))
+    return lambda x: density(x) / whole
+
+
+def fabric_half(t):
+    c = max(math.cos(t), 1e-3)
+    x = math.tan(t) ** 2 if t < 1.57 else 1e6
+    return tuple(s / math.pi * SLOPES[k](x) / (math.pi * c ** 4) if x < 1e5 else 0
+                 for k, (s, *_) in enumerate(FABRIC))
+
+
+SLOPES = [gamma_slopes(alpha, p) for _, alpha, p, *_ in FABRIC]
+
+
+def fabric_difference(t):
+    c = math.cos(t)
+    return tuple(max(f0 - f1 * c + (1 - f0) * (1 - c) ** 5, 0) for *_, f0, f1 in FABRIC)
+
+
 def main():
     folder = sys.argv[1]
-    for name in ("teatray", "earrings"):
+    for name in ("teatray", "earrings", "vase", "room", "ring"):
         os.makedirs(os.path.join(folder, name), exist_ok=True)
     at = lambda name: os.path.join(folder, name)
     write_ply(at("teatray/tray.ply"), *tray())
@@ -123,6 +174,10 @@ def main():
     write_ply(at("earrings/cloth.ply"), *cloth())
     write_curve(at("earrings/velvet_half.csv"), 128, velvet_half)
     write_curve(at("earrings/velvet_side.csv"), 128, velvet_side)
+    write_ply(at("vase/vase.ply"), *vase())
+    write_ply(at("ring/ring.ply"), *ring())
+    write_curve(at("room/fabric_half.csv"), 64, fabric_half)
+    write_curve(at("room/fabric_difference.csv"), 16, fabric_difference)
 
 
 main()
