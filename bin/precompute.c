@@ -43,7 +43,10 @@ static const struct option_spec options[] = {
      "1, where none is given: an albedo"},
     {.name = "tail", .type = OPTION_TEXT, .offset = AT(tail), .argument = "NAME", .def = "frozen",
      .help = "edit: light of more bounces meets the materials as they are (frozen),\n"
-     "or is left out (none)"},
+     "is left out (none), or comes from the ratio of the last two bounces (geometric)"},
+    {.name = "later", .type = OPTION_TEXT, .offset = AT(later), .argument = "NAME",
+     .def = "lambertian", .help = "edit: at later hops edits change how much a surface reflects, which is\n"
+     "Lambertian (lambertian), or as it was before (kept)"},
     {.name = "lights", .type = OPTION_INT, .offset = AT(lights), .argument = "N", .min = 8,
      .max = 1000000, .def = "4000", .help = "edit: triangles of the sky; 400 for a preview"},
     {.name = "light-samples", .type = OPTION_INT, .offset = AT(light_samples), .argument = "N",

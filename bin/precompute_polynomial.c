@@ -36,10 +36,22 @@ static bool parse_series(const char *text, uint32_t bounces, uint32_t series[EDI
 }
 
 static bool parse_tail(const char *text, enum polynomial_tail *tail) {
-    *tail = strcmp(text, "frozen") == 0 ? TAIL_FROZEN : TAIL_NONE;
-    if (*tail == TAIL_FROZEN || strcmp(text, "none") == 0)
-        return true;
-    log_error("--tail %s: expected frozen or none", text);
+    for (int i = 0; polynomial_tails[i]; i++)
+        if (strcmp(text, polynomial_tails[i]) == 0) {
+            *tail = (enum polynomial_tail)i;
+            return true;
+        }
+    log_error("--tail %s: expected none, frozen or geometric", text);
+    return false;
+}
+
+static bool parse_later(const char *text, enum polynomial_later *later) {
+    for (int i = 0; polynomial_laters[i]; i++)
+        if (strcmp(text, polynomial_laters[i]) == 0) {
+            *later = (enum polynomial_later)i;
+            return true;
+        }
+    log_error("--later %s: expected lambertian or kept", text);
     return false;
 }
 
@@ -85,7 +97,8 @@ int precompute_polynomial_run(const struct precompute_values *v, const char *com
         .dry_run = v->dry_run, .command = command, .version = RELUME_VERSION,
         .progress = v->quiet || v->dry_run ? NULL : show_progress, .user = &progress};
     o.job.seconds = v->seconds;
-    if (!samples_parse(v->samples, o.job.samples) || !parse_series(v->series, o.bounces, o.series) || !parse_tail(v->tail, &o.tail))
+    if (!samples_parse(v->samples, o.job.samples) || !parse_series(v->series, o.bounces, o.series) ||
+        !parse_tail(v->tail, &o.tail) || !parse_later(v->later, &o.later))
         return EXIT_USAGE;
     progress_begin(&progress, "precompute", v->quiet);
     const bool done = precompute_polynomial(&o, &result);

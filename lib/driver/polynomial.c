@@ -6,6 +6,11 @@
 
 #include "bsdf/diffuse.h"
 #include "bsdf/editable_data.h"
+#include "bsdf/equivalent_albedo.h"
+#include "curve/form_albedo.h"
+
+const char *const polynomial_tails[] = {"none", "frozen", "geometric", NULL};
+const char *const polynomial_laters[] = {"lambertian", "kept", NULL};
 
 // ---- the scene --------------------------------------------------------------------------------
 
@@ -102,7 +107,52 @@ static bool all_are_found(const struct polynomial *p) {
 
 // ---- the response -----------------------------------------------------------------------------
 
-static void make_response(struct polynomial *p, uint32_t bounces) {
+// An object's albedo as its factor is at run time (replay/edit_weights.h), by channel.
+static void own_albedo(const struct edit_object *o, double albedo[CURVE_CHANNELS]) {
+    const struct form *f = o->form;
+    static const double none[CURVE_CHANNELS];
+    memcpy(albedo, none, sizeof none);
+    for (uint32_t t = 0; t < f->terms; t++) {
+        double *e = mem_array((size_t)CURVE_CHANNELS * symbolic_places(f, t), sizeof *e);
+        double value[CURVE_CHANNELS];
+        equivalent_albedo(f, t, e);
+        form_term_albedo(f, t, e, value);
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            albedo[k] += o->share[t][k] * value[k];
+        mem_free(e);
+    }
+}
+
+static bool is_flat(const struct curve *c) {
+    for (uint32_t i = 1; i < c->channels * c->basis.count; i++)
+        if (c->values[i] != c->values[0])
+            return false;
+    return true;
+}
+
+static bool is_lambertian(const struct edit_object *o) {
+    bool even = true;
+    for (uint32_t t = 0; t < o->form->terms; t++)
+        even = even && o->form->term[t].quotient.kind == QUOTIENT_ONE &&
+               !o->form->term[t].quotient.has_fresnel && !editable_texture(o->material, t)->texture;
+    for (uint32_t c = 0; c < o->form->curves; c++)
+        even = even && is_flat(o->form->curve[c].f[0].table);
+    return even;
+}
+
+// Lambertian surfaces are shaded faster without, and an albedo of nearly 0 has no shape.
+static spectrum kept_shape(const struct edit_object *o) {
+    double albedo[CURVE_CHANNELS];
+    if (is_lambertian(o))
+        return spectrum_grey(0);
+    own_albedo(o, albedo);
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        if (!(albedo[k] > 1e-3))
+            return spectrum_grey(0);
+    return spectrum_rgb((float)(1 / albedo[0]), (float)(1 / albedo[1]), (float)(1 / albedo[2]));
+}
+
+static void make_response(struct polynomial *p, const struct polynomial_options *options) {
     p->objects = arena_alloc(&p->arena, p->plan.count * sizeof *p->objects);
     for (uint32_t i = 0; i < p->plan.count; i++) {
         struct symbolic_object *o = &p->objects[i];
@@ -110,11 +160,12 @@ static void make_response(struct polynomial *p, uint32_t bounces) {
         for (uint32_t t = 0; t < o->form->terms; t++)
             o->texture[t] = editable_texture(p->plan.objects[i].material, t);
         o->second = p->groups.second[i];
+        o->kept = options->later == LATER_KEPT ? kept_shape(&p->plan.objects[i]) : spectrum_grey(0);
     }
     symbolic_init(&p->response);
     p->response.objects = p->objects;
     p->response.object_count = p->plan.count;
-    p->response.bounces = bounces;
+    p->response.bounces = options->bounces;
     p->response.next = p->groups.next;
     p->survey = p->response;
     p->survey.survey = true;
@@ -126,7 +177,7 @@ static void make_integrator(struct polynomial *p, const struct polynomial_option
     p->path = (struct path){.max_depth = -1, .rr_depth = 3};
     if (given->type == &integrator_path.entry)
         p->path = *(const struct path *)given->data;
-    if (o->tail == TAIL_NONE)
+    if (o->tail != TAIL_FROZEN)
         p->path.max_depth = (int)o->bounces + 1;
     p->integrator = (struct object){.type = &integrator_path.entry, .data = &p->path};
     p->tracer = p->job.render.tracer;
@@ -155,7 +206,7 @@ bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
     if (done)
         find_objects(p);
     if (done && all_are_found(p) && edit_groups_init(&p->groups, &p->plan, o->series, o->bounces)) {
-        make_response(p, o->bounces);
+        make_response(p, o);
         make_integrator(p, o);
         return true;
     }

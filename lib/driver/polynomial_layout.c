@@ -139,6 +139,9 @@ bool polynomial_layout_init(struct polynomial_layout *l, const struct polynomial
         .samples = r->before + r->end - r->first, .quantum = r->quantum, .groups = p->groups.count,
         .objects = l->objects, .seen = l->seen, .storage = r->storage, .parts = 1,
         .fixed_base = r->base ? r->base->fixed_sums : NULL};
+    l->sums.last = p->path.max_depth > 0 ? (uint32_t)p->path.max_depth - 1 : 0;
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        l->sums.gain[k] = (float)(1 / (1 - p->radius[k]));
     return fits(l, r->base);
 }
 

@@ -78,7 +78,8 @@ static bool same_options(const struct json *meta, const struct polynomial *p,
     json_read_number(json_get(meta, "quantum"), &number);
     bool same = has_text(meta, "scene hash", hash) && number == quantum &&
                 has_count(meta, "seed", o->job.seed) && has_count(meta, "bounces", o->bounces) &&
-                has_text(meta, "tail", o->tail == TAIL_FROZEN ? "frozen" : "none") &&
+                has_text(meta, "tail", polynomial_tails[o->tail]) &&
+                has_text(meta, "later", polynomial_laters[o->later]) &&
                 (!p->tracer.sampler->counted || has_count(meta, "sampler points", p->tracer.spp));
     const struct json *series = json_get(meta, "series");
     for (uint32_t i = 0; i < o->bounces && same; i++) {

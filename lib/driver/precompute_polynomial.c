@@ -11,6 +11,7 @@
 #include "bsdf/equivalent_albedo.h"
 #include "driver/polynomial_layout.h"
 #include "driver/polynomial_resume.h"
+#include "driver/polynomial_tail.h"
 
 enum { STRIPS_BETWEEN_REPORTS = 8, DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
 
@@ -83,7 +84,13 @@ static struct json *describe(const struct run *r, uint32_t end) {
     struct json *series = json_add_array(meta, "series");
     for (uint32_t i = 0; i < o->bounces; i++)
         json_append_count(series, o->series[i]);
-    json_add_text(meta, "tail", o->tail == TAIL_FROZEN ? "frozen" : "none");
+    json_add_text(meta, "tail", polynomial_tails[o->tail]);
+    json_add_text(meta, "later", polynomial_laters[o->later]);
+    if (o->tail == TAIL_GEOMETRIC) {
+        struct json *radius = json_add_array(meta, "radius");
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            json_append_number(radius, p->radius[k]);
+    }
     edit_plan_describe(&p->plan, meta, terms);
     describe_albedos(r, terms);
     edit_groups_describe(&p->groups, &p->plan, meta);
@@ -238,6 +245,8 @@ static bool run(struct run *r) {
     const struct polynomial_options *o = r->options;
     struct tensor_file *base = NULL;
     uint32_t next = r->first;
+    if (o->tail == TAIL_GEOMETRIC && !polynomial_radius(r->p, o->bounces, r->p->radius))
+        return false;
     if (o->dry_run)
         return estimate(r);
     r->quantum = polynomial_quantum(r->p);

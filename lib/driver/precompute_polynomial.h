@@ -16,7 +16,18 @@
 enum polynomial_tail {
     TAIL_NONE,   // light that scatters more often is left out
     TAIL_FROZEN, // it scatters from the materials as they are, and adds to the same coefficients
+    TAIL_GEOMETRIC, // the last bounce stands for it, too (driver/polynomial_tail.h)
 };
+
+extern const char *const polynomial_tails[]; // "none", "frozen", "geometric", NULL
+
+// What edits are at later hops.
+enum polynomial_later {
+    LATER_LAMBERTIAN, // surfaces are Lambertian ones of the same albedo
+    LATER_KEPT,       // they keep the shape of their reflection and change its amount
+};
+
+extern const char *const polynomial_laters[]; // "lambertian", "kept", NULL
 
 struct polynomial_options {
     struct job_options job;     // scene, samples, size, ...; edit_scene is taken
@@ -25,6 +36,7 @@ struct polynomial_options {
     uint32_t bounces;           // scattering events that materials can be edited at
     uint32_t series[EDIT_MOST_BOUNCES]; // most bins of a curve at each of them
     enum polynomial_tail tail;
+    enum polynomial_later later;
     const char *output;
     enum tensor_storage storage;
     double most_memory;         // bytes the sums of tiles may take; 0: half of what there is
@@ -58,6 +70,7 @@ struct polynomial {
     struct symbolic response, survey;
     struct symbolic_object *objects;
     struct path path;          // the integrator's settings
+    double radius[CURVE_CHANNELS]; // of a geometric tail; else 0
     struct object integrator;
     struct tracer_options tracer;
     struct arena arena;

@@ -114,7 +114,7 @@ static int tensor_bounces(const struct verify *v) {
     const char *tail = json_text(json_get(v->tensor->meta, "tail"));
     int64_t bounces = 0;
     json_read_integer(json_get(v->tensor->meta, "bounces"), &bounces);
-    const bool all = v->options->all_bounces || (tail && strcmp(tail, "frozen") == 0);
+    const bool all = v->options->all_bounces || (tail && strcmp(tail, "none") != 0);
     return all || bounces < 1 || bounces > 1000 ? 0 : (int)bounces;
 }
 

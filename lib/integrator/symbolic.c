@@ -161,6 +161,7 @@ static bool is_wide(const struct response *response, const struct trace_context 
     if (self->survey)
         return false;
     return object == CHAIN_FIXED || (depth > 0 && depth < self->bounces &&
+                                     spectrum_is_black(self->objects[object].kept) &&
                                      !is_second(self, &ctx->sink->chains[lane], object));
 }
 
@@ -184,7 +185,11 @@ static const struct closure *resolve_later(const struct symbolic *self, struct c
         return resolve_basis(o, chain->later, o->second, s, wo, stack);
     }
     take_step(self, chain, object);
-    return resolve_white(wo, stack);
+    if (spectrum_is_black(o->kept))
+        return resolve_white(wo, stack);
+    for (uint32_t i = 0; i < chain->later[CHAIN_PATH].count; i++)
+        chain->later[CHAIN_PATH].mark[i].weight *= o->kept;
+    return bsdf_resolve(s->bsdf, &s->point, wo, stack);
 }
 
 static const struct closure *resolve(const struct response *response,

@@ -4,8 +4,9 @@
 // What is seen first answers with the basis of its curves: for each term and each pair of functions
 // that are not zero, quotient times cosine (and texture), and where among the object's coefficients
 // that belongs. Every later editable surface is Lambertian with an albedo that is left open, so its
-// answer is the cosine over pi and a step from one group to the next; or, where the second hop has
-// curves of its own, the first of them answers with a basis again. After `bounces` scattering events
+// answer is the cosine over pi and a step from one group to the next; or it keeps its material, divided
+// by the albedo, so that edits change how much it reflects and not where to; or, where the second hop
+// has curves of its own, the first of them answers with a basis again. After `bounces` scattering events
 // all surfaces answer with their materials as they are, and so do those that are never edited.
 //
 // The weight that an integrator sees is the density it draws with: its paths, and its roulette,
@@ -22,6 +23,7 @@ struct symbolic_object {
     bool knows_view;            // some term has a curve over theta_o
     struct bin_sampler sampler;
     const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
+    spectrum kept;          // 1 over the albedo of the material that it keeps later; 0: Lambertian
 };
 
 struct symbolic {

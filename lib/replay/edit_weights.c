@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "curve/form_albedo.h"
+
 static const struct form_term *term_of(const struct edit_tensor *e, uint32_t block) {
     const struct edited_block *b = &e->blocks[block];
     return b->object == EDIT_NOTHING ? NULL : &e->objects[b->object].form.term[b->term];
@@ -37,53 +39,19 @@ bool edit_view_factor(const struct edit_tensor *e, uint32_t block, float *factor
 
 // ---- factors ------------------------------------------------------------------------------------
 
-// Mean of a curve of theta_o over directions to the eye, weighted by their cosine.
-static double view_mean(const struct curve *c, uint32_t channel) {
-    enum { STEPS = 2048 };
-    double sum = 0, all = 0;
-    for (int i = 0; i < STEPS; i++) {
-        const double gamma = CURVE_END * (i + 0.5) / STEPS, w = sin(2 * gamma);
-        sum += w * curve_at(c, channel, gamma);
-        all += w;
-    }
-    return sum / all;
-}
-
-static void outer_value(const struct edited_object *o, uint32_t term, double value[CURVE_CHANNELS]) {
-    const struct form_term *t = &o->form.term[term];
-    for (uint32_t k = 0; k < CURVE_CHANNELS; k++) {
-        value[k] = t->scale[k];
-        if (edit_has_slot(t, SLOT_O))
-            value[k] *= view_mean(o->curve[t->slots[SLOT_O].curve], k);
-    }
-}
-
 static const struct curve *curve_in(const struct edited_object *o, const struct form_term *t,
                                     enum form_slot_name slot) {
     return edit_has_slot(t, slot) ? o->curve[t->slots[slot].curve] : NULL;
-}
-
-// sum_{j,k} cA_j cB_k e[j][k]
-static double curves_albedo(const struct edited_object *o, uint32_t term, uint32_t channel) {
-    const struct form_term *t = &o->form.term[term];
-    const struct curve *a = curve_in(o, t, SLOT_A), *b = curve_in(o, t, SLOT_B);
-    const uint32_t rows = a ? a->basis.count : 1, columns = b ? b->basis.count : 1;
-    double sum = 0;
-    for (uint32_t j = 0; j < rows; j++)
-        for (uint32_t k = 0; k < columns; k++)
-            sum += (a ? curve_values(a, channel)[j] : 1) * (b ? curve_values(b, channel)[k] : 1) *
-                   o->albedo[term][((size_t)j * columns + k) * CURVE_CHANNELS + channel];
-    return sum;
 }
 
 static void albedo_value(const struct edited_object *o, double value[CURVE_CHANNELS]) {
     for (int k = 0; k < CURVE_CHANNELS; k++)
         value[k] = 0;
     for (uint32_t t = 0; t < o->form.terms; t++) {
-        double outer[CURVE_CHANNELS];
-        outer_value(o, t, outer);
+        double own[CURVE_CHANNELS];
+        form_term_albedo(&o->form, t, o->albedo[t], own);
         for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
-            value[k] += o->share[t][k] * outer[k] * curves_albedo(o, t, k);
+            value[k] += o->share[t][k] * own[k];
     }
 }
 
@@ -130,7 +98,7 @@ void edit_factor_value(const struct edit_tensor *e, const struct edited_factor *
         albedo_value(o, value);
         return;
     }
-    outer_value(o, f->term, value);
+    form_term_outer(&o->form, f->term, value);
     for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
         value[k] *= coarse_mean(o, f, k);
 }

@@ -148,7 +148,8 @@ static void view_add(struct sink *s, int lane, const struct contribution *c) {
     const struct chain *chain = &v->chains[lane];
     const struct marks *first = &chain->first[c->sampled ? chain->first_of_light : CHAIN_PATH];
     const struct marks *later = &chain->later[c->sampled ? chain->later_of_light : CHAIN_PATH];
-    const spectrum value = c->weight * c->emission;
+    const spectrum gain = c->depth > 0 && c->depth == o->last ? o->gain : spectrum_grey(1);
+    const spectrum value = c->weight * c->emission * gain;
     if (!l->wanted)
         return;
     if (chain->object == CHAIN_FIXED && later->mark[0].index == 0) {

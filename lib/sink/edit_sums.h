@@ -34,6 +34,8 @@ struct edit_sums_options {
     uint32_t samples;                // a pixel has got in all, with the earlier tensor's: even
     double quantum;                  // a power of two; 0: none
     uint32_t groups;
+    uint32_t last;                   // light of so many scattering events is multiplied; 0: none
+    spectrum gain;                   // by this
     const struct edit_sums_object *objects; // those of `seen`, the last for fixed surfaces
     const struct first_seen *seen;   // of the same samples
     enum tensor_storage storage;
