@@ -5,7 +5,7 @@
 #include "integrator/path.h"
 #include "sink/bounce_sums.h"
 
-enum { PILOT_SAMPLES = 16 };
+enum { PILOT_PATHS = 1 << 18, LEAST_SAMPLES = 8 };
 
 // Asked at every vertex: the world shades what is editable as white where it shades together.
 static struct bounce_sums *measure(const struct polynomial *p) {
@@ -13,10 +13,12 @@ static struct bounce_sums *measure(const struct polynomial *p) {
     const struct response whole = {.resolve = response_physical.resolve};
     struct bounce_sums *b = bounce_sums_create((struct sink_area){f->x0, f->y0, f->x1, f->y1});
     struct tracer_options o = p->tracer;
-    o.spp = PILOT_SAMPLES;
+    const uint32_t pixels = (uint32_t)((f->x1 - f->x0) * (f->y1 - f->y0));
+    o.spp = PILOT_PATHS / (pixels ? pixels : 1);
+    o.spp = o.spp > LEAST_SAMPLES ? o.spp : LEAST_SAMPLES;
     o.response = &whole;
     struct tracer *t = tracer_create(&o, bounce_sums_sink, b);
-    tracer_run(t, 0, tile_grid_count(&b->grid), 0, PILOT_SAMPLES);
+    tracer_run(t, 0, tile_grid_count(&b->grid), 0, o.spp);
     tracer_destroy(t);
     return b;
 }

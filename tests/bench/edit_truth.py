@@ -109,7 +109,7 @@ class Bench:
         for seed in (1, 2):
             self.run("render", scene, "-o", self.path("u%d.exr" % seed), "-q", "--integrator", "path",
                      "--max-depth", "-1" if o.all_bounces else str(bounces + 1), "--seed", str(seed),
-                     "--size", "%dx%d" % (o.size, o.size), "--spp", str(o.truth))
+                     "--size", "%dx%d" % (o.size, o.size), "--samples", "0:%d" % o.truth)
         self.run("merge", self.path("u1.exr"), self.path("u2.exr"), "-o", self.path("m.exr"), "-q")
 
     def error(self, scene, tensor, session):
