@@ -88,10 +88,10 @@ class Bench:
         done = subprocess.run([self.options.relume, *words], capture_output=True, text=True)
         if done.returncode:
             sys.exit("%s\n%s" % (" ".join(words), done.stderr))
-        return json.loads(done.stdout.splitlines()[-1]) if "--json" in words else None
+        return json.loads(done.stdout) if "--json" in words else None
 
     def relmse(self, truth, picture):
-        return self.run("compare", truth, picture, "--json")["relmse"]
+        return self.run("compare", truth, picture, "--json")["relmse"]["value"]
 
     def precompute(self, scene, series, seed=7):
         o = self.options
