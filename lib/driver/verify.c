@@ -157,15 +157,18 @@ static void compare(struct verify *v, const int area[4], const struct image *a,
     for (size_t i = 0; i < n; i++) {
         const size_t row = i / (size_t)(area[2] - area[0]), column = i % (size_t)(area[2] - area[0]);
         const size_t at = ((size_t)area[1] + row) * w + (size_t)area[0] + column;
+        double power = v->floor;
         for (size_t k = 0; k < 3; k++) {
             const double p = (double)v->frame[k * plane + at], scale = p * p + v->floor;
             const double x = p - (double)a->pixels[i * (size_t)a->channels + k];
             const double y = p - (double)b->pixels[i * (size_t)b->channels + k];
             relmse += scale > 0 ? x * y / scale : 0;
-            noise += scale > 0 ? (double)v->variance[at] / scale : 0;
+            power += p * p / 3;
             bias += 0.5 * (x + y);
             v->result->mean += p;
         }
+        // A variance of all channels together, against a coloured pixel's power: not its darkest channel.
+        noise += power > 0 ? 3 * (double)v->variance[at] / power : 0;
     }
     relmse /= 3 * (double)n;
     v->sums[0] += relmse;
