@@ -45,8 +45,8 @@ static const struct option_spec options[] = {
      .help = "edit: light of more bounces meets the materials as they are (frozen),\n"
      "is left out (none), or comes from the ratio of the last two bounces (geometric)"},
     {.name = "later", .type = OPTION_TEXT, .offset = AT(later), .argument = "NAME",
-     .def = "lambertian", .help = "edit: at later hops edits change how much a surface reflects, which is\n"
-     "Lambertian (lambertian), or as it was before (kept)"},
+     .def = "kept", .help = "edit: at later hops edits change how much a surface reflects, not where to, which\n"
+     "is as it was (kept), or Lambertian (lambertian)"},
     {.name = "lights", .type = OPTION_INT, .offset = AT(lights), .argument = "N", .min = 8,
      .max = 1000000, .def = "4000", .help = "edit: triangles of the sky; 400 for a preview"},
     {.name = "light-samples", .type = OPTION_INT, .offset = AT(light_samples), .argument = "N",
@@ -183,8 +183,8 @@ const struct subcommand subcommand_precompute = {
                                "under other lighting at the speed of memory.\nprecompute edit: how "
                                "it depends on its editable materials, with all bounces or, --direct, "
                                "under direct light;\n`relume edit` changes them. What the eye sees "
-                               "keeps its curves; other surfaces light it as Lambertian ones of the\n"
-                               "same albedo, unless --series leaves the second hop a coarser curve.",
+                               "keeps its curves; where light was before, edits change how much\n"
+                               "surfaces reflect (--later), unless --series leaves the second hop a coarser curve.",
                 .examples = "  relume precompute relight room.xml -o room.safetensors --basis lights "
                             "--spp 256\n"
                             "  relume precompute relight car.xml -o car.safetensors --basis "
