@@ -47,7 +47,7 @@ static const struct option_spec options[] = {
      .help = "render samples A to B-1 only, multiples of 64, for `relume merge`;\n"
              "keeps a journal"},
     {.name = "adaptive", .type = OPTION_FLAG, .offset = AT(adaptive),
-     .help = "take more samples where a pilot of 32 finds noise, fewer elsewhere, the\n"
+     .help = "take more samples where a pilot of 16 finds noise, fewer elsewhere, the\n"
              "same number in all; without bias. Layer `samples` says where"},
     {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
      .min = 0, .max = 1e9,

@@ -2,6 +2,7 @@
 #include "driver/job.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -176,9 +177,13 @@ static bool prepare(struct job *job, const struct job_options *o) {
     return set_render_options(job, o);
 }
 
+// The time of the pilot counts.
 static bool use_pilot(struct job *job) {
+    const double least = 1e-3, start = time_seconds();
     if (!pilot_run(job, &job->scene->arena, &job->map))
         return false;
+    if (job->render.seconds > 0)
+        job->render.seconds = fmax(job->render.seconds - (time_seconds() - start), least);
     job->film.map = job->render.tracer.map = &job->map;
     return true;
 }

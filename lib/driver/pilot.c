@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sum over pixels of E / n is least, for a given sum of n, when n follows sqrt(E), where E is the
-// squared relative error of a single sample (Neyman 1934). E is known badly from a few samples: it is
-// pooled over three by three packets, and no part gets less than half of the mean.
+// squared relative error of a single sample (Neyman 1934). E is known badly from a few samples, so
+// roots are averaged over three by three packets: relative errors change less from place to place than
+// errors and radiances do, and the root keeps one bright sample from counting for much. And E is not
+// known at all where a pilot met none of the rare bright samples that may make most of the error: half
+// of the samples are spread evenly, which bounds what a wrong map can cost.
 #include "driver/pilot.h"
 
 #include "math/hash.h"
 
-enum { PILOT_SAMPLES = 32, LEAST_QUARTERS = 2, PILOT_SEED = 0x9e3779b9 };
+enum { PILOT_SAMPLES = 16, LEAST_QUARTERS = 2, PILOT_SEED = 0x9e3779b9 };
 
 // Per packet of the picture: the sum of squared errors of a sample, of radiances, and of pixels.
 struct packets {
@@ -30,36 +33,49 @@ static void gather(const struct image *im, const struct film_options *o, struct 
         }
 }
 
-// Pooled over the packets around (x, y).
-static double wish(const struct packets *p, int x, int y, double mean) {
-    double error = 0, radiance = 0, pixels = 0;
-    if (p->pixels[y * p->width + x] == 0)
+// Root of the squared relative error of a sample in packet i; negative: not in the picture.
+static double root_error(const struct packets *p, size_t i, double mean) {
+    if (p->pixels[i] == 0)
+        return -1;
+    const double b = p->radiance[i] / p->pixels[i], scale = b * b + 1e-3 * mean * mean;
+    return scale > 0 ? sqrt(p->error[i] / p->pixels[i] / scale) : 0;
+}
+
+// Mean over the packets around (x, y); negative: not in the picture.
+static double wish(const struct packets *p, const double *roots, int x, int y) {
+    double sum = 0, count = 0;
+    if (roots[y * p->width + x] < 0)
         return -1;
     for (int j = y > 0 ? y - 1 : 0; j <= y + 1 && j < p->height; j++)
         for (int i = x > 0 ? x - 1 : 0; i <= x + 1 && i < p->width; i++) {
-            error += p->error[j * p->width + i];
-            radiance += p->radiance[j * p->width + i];
-            pixels += p->pixels[j * p->width + i];
+            const double root = roots[j * p->width + i];
+            sum += fmax(root, 0);
+            count += root >= 0;
         }
-    const double b = radiance / pixels, scale = b * b + 1e-3 * mean * mean;
-    return scale > 0 ? sqrt(error / pixels / scale) : 0;
+    return sum / count;
 }
 
 static void make_map(const struct image *im, const struct film_options *o, struct packets *p,
                      struct sample_map *map) {
     const size_t n = (size_t)p->width * (size_t)p->height;
-    double *wishes = mem_array(n, sizeof *wishes);
-    double sum = 0, pixels = 0;
+    double *roots = mem_array(2 * n, sizeof *roots), *wishes = roots + n;
+    double radiance = 0, pixels = 0, wished = 0, packets = 0;
     gather(im, o, p);
     for (size_t i = 0; i < n; i++) {
-        sum += p->radiance[i];
+        radiance += p->radiance[i];
         pixels += p->pixels[i];
     }
-    for (int y = 0; y < p->height; y++)
-        for (int x = 0; x < p->width; x++)
-            wishes[y * p->width + x] = wish(p, x, y, sum / pixels);
+    for (size_t i = 0; i < n; i++)
+        roots[i] = root_error(p, i, radiance / pixels);
+    for (size_t i = 0; i < n; i++) {
+        wishes[i] = wish(p, roots, (int)i % p->width, (int)i / p->width);
+        wished += fmax(wishes[i], 0);
+        packets += wishes[i] >= 0;
+    }
+    for (size_t i = 0; i < n; i++)
+        wishes[i] += wishes[i] >= 0 ? wished / packets : 0;
     sample_map_fill(map, wishes, LEAST_QUARTERS);
-    mem_free(wishes);
+    mem_free(roots);
 }
 
 // Renders PILOT_SAMPLES with numbers that the picture does not use.

@@ -112,9 +112,9 @@ static bool give_up(struct tracer *t) {
     return atomic_load(&t->abandoned);
 }
 
-// Traces, of the samples that the map has for a step, the `round`th of every packet that has one.
-// false: there was none.
-static bool trace_round(const struct tracer *t, struct worker *w, const struct sink_area *wanted,
+// Starts, of the samples that the map has for a step, the `round`th of every packet that has one, and
+// traces what fills a batch. false: there was none.
+static bool start_round(const struct tracer *t, struct worker *w, const struct sink_area *wanted,
                         uint32_t step, uint32_t round, struct batch *b) {
     const struct sample_map *map = t->options.map;
     const int x0 = wanted->x0 / PACKET_SIDE * PACKET_SIDE;
@@ -133,7 +133,6 @@ static bool trace_round(const struct tracer *t, struct worker *w, const struct s
             if (b->count == b->most)
                 trace_batch(t, w, b);
         }
-    trace_batch(t, w, b); // a pixel's samples are added in order
     return any;
 }
 
@@ -149,11 +148,14 @@ static void trace_tile(void *ctx, size_t tile, int index) {
         return;
     sink->type->open(sink, t->first_tile + (uint32_t)tile, &wanted);
     for (uint32_t s = t->first; s < t->first + t->count; s++) {
-        for (uint32_t round = 0; trace_round(t, w, &wanted, s, round, &batch); round++)
+        for (uint32_t round = 0; start_round(t, w, &wanted, s, round, &batch); round++)
             ;
+        if (!t->options.map) // the few packets of later rounds wait for those of the next step
+            trace_batch(t, w, &batch);
         if (give_up(t))
             return;
     }
+    trace_batch(t, w, &batch);
     sink->type->close(sink);
 }
 
