@@ -113,7 +113,7 @@ struct node {
     struct cell cell;
     struct sum sum;
     double urgency;
-    size_t index; // among the nodes of its level, down to the base level
+    size_t index; // among the nodes of its level
     int level;
     uint64_t path; // from the root, for the order of the list
 };
@@ -221,7 +221,8 @@ static void list_nodes(struct tree *t, struct light_triangles *out) {
             continue;
         struct light_triangle *l = &out->items[out->count++];
         *l = (struct light_triangle){
-            .corner = {c[0], c[1], c[2]}, .centre = centre_of(&n->cell), .solid_angle = solid_angle_within(c)};
+            .corner = {c[0], c[1], c[2]}, .centre = centre_of(&n->cell),
+            .solid_angle = solid_angle_within(c), .level = n->level, .number = n->index};
         for (int k = 0; k < 3; k++) {
             l->power[k] = n->sum.rgb[k];
             out->power[k] += n->sum.rgb[k];
@@ -246,6 +247,37 @@ void light_triangles_init(struct light_triangles *out, const struct sky *sky, ui
     mem_free(t.heap);
     for (int l = 0; l <= BASE_LEVEL; l++)
         mem_free(t.levels[l]);
+}
+
+// ---- refinement -------------------------------------------------------------------------------
+
+static uint64_t path_of(const struct light_triangle *t) {
+    return t->number << 2 * (DEEPEST - t->level);
+}
+
+static void keep(struct light_triangles *out, const struct light_triangle *t, double sign) {
+    struct light_triangle *l = &out->items[out->count++];
+    *l = *t;
+    for (int k = 0; k < 3; k++) {
+        l->power[k] *= sign;
+        out->power[k] += l->power[k];
+    }
+}
+
+void light_triangles_refine(struct light_triangles *t, const struct light_triangles *coarse) {
+    struct light_triangles out = {.items = mem_array(t->count + coarse->count, sizeof *t->items)};
+    uint32_t i = 0, k = 0;
+    while (i < t->count || k < coarse->count) {
+        const struct light_triangle *a = &t->items[i], *b = &coarse->items[k];
+        if (i < t->count && k < coarse->count && a->number == b->number && a->level == b->level)
+            i++, k++;
+        else if (k == coarse->count || (i < t->count && path_of(a) < path_of(b)))
+            keep(&out, &t->items[i++], 1);
+        else
+            keep(&out, &coarse->items[k++], -1);
+    }
+    light_triangles_finish(t);
+    *t = out;
 }
 
 void light_triangles_finish(struct light_triangles *t) {

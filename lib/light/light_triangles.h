@@ -10,7 +10,13 @@
 //
 // Conventions: directions towards the light, world space. Triangles stand in the order of the tree,
 // so that neighbours in the list are neighbours in the sky. Those without light are left out.
+//
+// More triangles are made by splitting more, so that a list for few is refined to one for many:
+// what is missing (light_triangles_refine) are the children, and the split ones with the light
+// taken away.
 #pragma once
+
+#include <stdint.h>
 
 #include "math/direction.h"
 #include "math/vec.h"
@@ -19,6 +25,8 @@ struct light_triangle {
     struct direction corner[3], centre;
     double solid_angle;
     double power[3]; // radiance integrated over it, per channel
+    int level;       // splits above it, and its number among the cells of that level: the same
+    uint64_t number; // in every list
 };
 
 struct light_triangles {
@@ -38,6 +46,8 @@ struct sky {
 // measured at points twice as dense as the details, and far more where it matters.
 void light_triangles_init(struct light_triangles *t, const struct sky *sky, uint32_t most,
                           int threads);
+// Turns a list into what it has more than one for fewer triangles of the same sky.
+void light_triangles_refine(struct light_triangles *t, const struct light_triangles *coarse);
 void light_triangles_finish(struct light_triangles *t);
 
 // Between the directions of a spherical triangle.

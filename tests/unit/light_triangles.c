@@ -78,7 +78,36 @@ static void leaves_out_darkness(void) {
     light_triangles_finish(&t);
 }
 
+// A list for few triangles and what one for many has more are the list for many.
+static void is_refined(void) {
+    struct light_triangles few, many, more;
+    double sum[3] = {0}, negative = 0;
+    uint32_t taken = 0;
+    light_triangles_init(&few, &(struct sky){smooth, NULL, 0}, 400, 2);
+    light_triangles_init(&many, &(struct sky){smooth, NULL, 0}, 4000, 2);
+    light_triangles_init(&more, &(struct sky){smooth, NULL, 0}, 4000, 2);
+    light_triangles_refine(&more, &few);
+    for (uint32_t i = 0; i < more.count; i++) {
+        const double power = more.items[i].power[1];
+        taken += power < 0;
+        negative -= power < 0 ? power : 0;
+        for (int k = 0; k < 3; k++)
+            sum[k] += more.items[i].power[k];
+    }
+    printf("from 400 to 4000: %u triangles, %u of them taken away\n", more.count, taken);
+    CHECK(few.count - taken + (more.count - taken) == many.count);
+    CHECK(taken > 100 && taken <= few.count && negative > 0);
+    for (int k = 0; k < 3; k++)
+        CHECK_NEAR(sum[k], 0, 1e-9);
+    light_triangles_refine(&many, &many);
+    CHECK(many.count == 0);
+    light_triangles_finish(&few);
+    light_triangles_finish(&many);
+    light_triangles_finish(&more);
+}
+
 int main(void) {
+    is_refined();
     keeps_light();
     refines_where_light_is();
     leaves_out_darkness();
