@@ -60,7 +60,9 @@ static const struct option_spec options[] = {
              "positions in a pixel, 0: 16",
      .def = "0"},
     {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
-     .help = "edit: samples A to B-1 only, multiples of 64, for `relume tensor merge`"},
+     .help = "edit: samples A to B-1 only, multiples of 64, for `relume tensor merge`;\n"
+             "--direct: triangles in the order in which the sky is split: 0:400,\n"
+             "then 400:4000, which refines it"},
     {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "SECONDS", .min = 0,
      .max = 1e9, .help = "edit: stop after so long: 90, 90s, 15m, 2h"},
     {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
@@ -69,7 +71,8 @@ static const struct option_spec options[] = {
     {.name = "resume", .type = OPTION_FLAG, .offset = AT(resume),
      .help = "edit: go on from the output if it is there, also to more samples than\n"
              "before. These four keep exact sums in the tensor, which make it three\n"
-             "times as large; `relume tensor requantise` drops them"},
+             "times as large; `relume tensor requantise` drops them. --direct:\n"
+             "work is kept in T.part, even when killed, and gone on with"},
     OPTION_SIZE(struct precompute_values, size),
     OPTION_CROP(struct precompute_values, crop),
     OPTION_RECEIVER(struct precompute_values, receiver),
@@ -159,8 +162,10 @@ static int run(const void *values, const char *command) {
         log_error("precompute %s: expected relight or edit", v->kind);
         return EXIT_USAGE;
     }
-    if (precompute_is_progressive(v) && (!edit || v->direct)) {
-        log_error("--samples, --time, --checkpoint and --resume go with edit, without --direct");
+    const bool by_and_by = v->seconds > 0 || v->checkpoint > 0;
+    if (precompute_is_progressive(v) && (!edit || (v->direct && by_and_by))) {
+        log_error("--samples, --time, --checkpoint and --resume go with edit, --time and --checkpoint "
+                  "without --direct");
         return EXIT_USAGE;
     }
     if (v->quiet)

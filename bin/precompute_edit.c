@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume precompute edit
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
 #include "base/log.h"
 #include "base/progress.h"
 #include "driver/precompute_edit.h"
@@ -48,16 +52,33 @@ static void report(const struct precompute_values *v, const struct edit_report *
         print_json(v, r);
 }
 
+// "A:B" of --samples, or NULL: all of --lights.
+static bool parse_range(const struct precompute_values *v, uint32_t *first, uint32_t *end) {
+    char rest;
+    *first = 0;
+    *end = (uint32_t)v->lights;
+    if (!v->samples || (sscanf(v->samples, "%" SCNu32 ":%" SCNu32 "%c", first, end, &rest) == 2 &&
+                      *end > *first && *end >= 8 && *end <= 1000000 && (*first == 0 || *first >= 8) &&
+                      !strchr(v->samples, '-')))
+        return true;
+    log_error("--samples %s: expected A:B, the first triangle and the one after the last; 8 are the "
+              "fewest", v->samples);
+    return false;
+}
+
 int precompute_edit_run(const struct precompute_values *v, const char *command,
                         const struct scene_define *defines) {
     struct progress progress;
     struct edit_report result;
+    uint32_t first, end;
     if (!v->direct)
         return precompute_polynomial_run(v, command, defines);
+    if (!parse_range(v, &first, &end))
+        return EXIT_USAGE;
     progress_begin(&progress, "precompute", v->quiet);
     const struct edit_options o = {
         .job = precompute_job(v, defines), .edit = v->edit.items, .edit_count = v->edit.count,
-        .lights = (uint32_t)v->lights, .light_samples = (uint32_t)v->light_samples,
+        .lights = end, .first = first, .resume = v->resume, .light_samples = (uint32_t)v->light_samples,
         .unshadowed = v->unshadowed, .packets = precompute_packets[v->packets], .output = v->output,
         .storage = v->half ? TENSOR_BF16 : TENSOR_F32, .most_memory = v->memory * 1e9,
         .dry_run = v->dry_run, .command = command, .version = RELUME_VERSION,

@@ -216,9 +216,10 @@ static void add_position(const struct job *job, const struct light_triangles *sk
     const struct object material = {&bsdf_editable.entry,
                                     (void *)(uintptr_t)editable_owner(editable_inside(c, &any, &factor)),
                                     NULL, {NULL, 0}};
-    for (uint32_t m = position; m < sky->count; m += t->spp)
-        add_light(job->world, &s, c, editable_form(&material), &sky->items[m], depth, exact, weight,
-                  rgb);
+    for (uint32_t m = 0; m < sky->count; m++)
+        if (light_loop_position(&sky->items[m], t->spp) == position)
+            add_light(job->world, &s, c, editable_form(&material), &sky->items[m], depth, exact,
+                      weight, rgb);
 }
 
 void edit_picture_by_loop(const char *scene, const struct edit_options *options, int depth, bool exact,

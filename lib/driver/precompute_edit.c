@@ -9,7 +9,9 @@
 
 #include "base/log.h"
 #include "base/thread.h"
+#include "driver/edit_fixed.h"
 #include "driver/edit_pixels.h"
+#include "driver/edit_sky.h"
 
 enum { DEFAULT_POSITIONS = 16, TRIAL_REGIONS = 6, DRY_REGIONS = 24 };
 
@@ -33,6 +35,7 @@ struct precompute {
     int threads;
     struct tensor tensor;
     struct tensor_writer *writer; // NULL: a trial, nothing is kept
+    unsigned char *marks;         // of what is done: the fixed picture, then regions; NULL: not kept
     uint32_t *first_block;        // by object
     bool noisy;
     const uint32_t *regions;      // that are worked on
@@ -79,30 +82,6 @@ static bool open_scene(struct precompute *p) {
     return false;
 }
 
-static spectrum sky_radiance(const void *ctx, vec3 w) {
-    const struct world *world = ctx;
-    const struct light_hit hit = {.wi = w, .distance = INFINITY};
-    spectrum sum = spectrum_grey(0);
-    for (uint32_t i = 0; i < world->infinite_count; i++) {
-        const struct world_light *l = &world->lights[world->infinite[i]];
-        sum += l->type->emission(l->data, &hit);
-    }
-    return spectrum_clamp(sum, 0, 1e30f);
-}
-
-static void make_lights(struct precompute *p) {
-    const struct world *w = p->job.world;
-    struct sky sky = {sky_radiance, w, 0};
-    for (uint32_t i = 0; i < w->infinite_count; i++) {
-        const struct world_light *l = &w->lights[w->infinite[i]];
-        const double detail = l->type->detail ? (double)l->type->detail(l->data) : 0;
-        if (detail > 0 && (sky.detail == 0 || detail < sky.detail))
-            sky.detail = detail;
-    }
-    if (w->infinite_count > 0)
-        light_triangles_init(&p->lights, &sky, p->options->lights, p->threads);
-}
-
 static void make_loop(struct precompute *p) {
     const struct tracer_options *t = &p->job.render.tracer;
     p->objects = mem_array(p->plan.count, sizeof *p->objects);
@@ -112,7 +91,8 @@ static void make_loop(struct precompute *p) {
     p->scene = light_loop_scene_create(&(struct light_loop_options){
         .world = t->world, .sensor = t->sensor, .filter = t->filter, .sampler = t->sampler,
         .seed = t->seed, .positions = t->spp, .lights = &p->lights,
-        .unshadowed = p->options->unshadowed, .as_points = p->options->as_points, .tolerance = p->options->tolerance,
+        .refines = p->options->first > 0, .unshadowed = p->options->unshadowed,
+        .as_points = p->options->as_points, .tolerance = p->options->tolerance,
         .light_samples = (p->options->light_samples + 1) / 2 * 2, .objects = p->objects,
         .object_count = p->plan.count});
     p->noisy = light_loop_has_noise(p->scene);
@@ -268,10 +248,13 @@ static void work_on_region(void *ctx, size_t item, int worker) {
     const uint32_t region = p->regions ? p->regions[item] : (uint32_t)item;
     const int x = (first_x + (int)region % p->pixels.regions_x) * EDIT_REGION;
     const int y = (first_y + (int)region / p->pixels.regions_x) * EDIT_REGION;
+    unsigned char *mark = p->marks && p->writer ? &p->marks[region + 1] : NULL;
     accel_thread_init();
-    for (int i = 0; i < 4 && !stopped(p); i++)
+    for (int i = 0; i < 4 && !stopped(p) && !(mark && *mark); i++)
         work_on_block(p, &p->workers[worker], x + i % 2 * LIGHT_LOOP_SIDE,
                       y + i / 2 * LIGHT_LOOP_SIDE);
+    if (mark && !stopped(p))
+        *mark = 1;
     const uint32_t done = atomic_fetch_add(&p->done, 1) + 1;
     if (p->options->progress && p->writer && worker == 0)
         p->options->progress(p->options->user, (double)done / p->work);
@@ -303,7 +286,7 @@ static void take_counts(struct precompute *p) {
 static void choose_packets(struct precompute *p) {
     const char *asked = p->options->packets ? p->options->packets : "auto";
     enum light_packets best = strcmp(asked, "lights") == 0 ? PACKETS_OF_LIGHTS : PACKETS_OF_PIXELS;
-    if (strcmp(asked, "auto") == 0) {
+    if (strcmp(asked, "auto") == 0 && !p->options->resume) { // a second run may measure otherwise
         uint32_t regions[TRIAL_REGIONS];
         const uint32_t count = edit_pixels_spread(&p->pixels, regions, TRIAL_REGIONS);
         double seconds[2];
@@ -317,50 +300,6 @@ static void choose_packets(struct precompute *p) {
     }
     light_loop_set_packets(p->scene, best);
     p->report->packets = best == PACKETS_OF_LIGHTS ? "lights" : "pixels";
-}
-
-// ---- what no edit changes -----------------------------------------------------------------------
-
-// The material, but black where it can be edited.
-struct fixed_response {
-    struct response head;
-    const struct edit_plan *plan;
-};
-
-static const struct closure *resolve_fixed(const struct response *self,
-                                           const struct trace_context *ctx, int lane,
-                                           uint32_t depth, const struct surface *s, vec3 wo) {
-    const struct closure *c = response_physical.resolve(&response_physical, ctx, lane, depth, s, wo);
-    vec3 wi = v3(0, 0, 1);
-    float factor = 1;
-    const struct closure *inner = c ? editable_inside(c, &wi, &factor) : NULL;
-    const struct edit_plan *plan = ((const struct fixed_response *)(const void *)self)->plan;
-    return inner && edit_plan_find(plan, editable_owner(inner)) != EDIT_NONE ? NULL : c;
-}
-
-static bool render_fixed(struct precompute *p) {
-    const double start = time_seconds();
-    const struct fixed_response response = {{resolve_fixed}, &p->plan};
-    struct render_result result;
-    struct image im;
-    float *fixed = tensor_fixed(p->writer);
-    p->job.render.tracer.response = &response.head;
-    struct film *film = job_render(&p->job, &result);
-    const bool made = !result.stopped && film_image(film, &im);
-    film_destroy(film);
-    p->report->fixed_seconds = time_seconds() - start;
-    if (!made)
-        return false;
-    const struct film_options *f = &p->job.film;
-    const size_t plane = (size_t)p->tensor.width * p->tensor.height;
-    for (int y = 0; y < im.height; y++)
-        for (int x = 0; x < im.width; x++)
-            for (int k = 0; k < 3; k++)
-                fixed[(size_t)k * plane + (size_t)(f->y0 + y) * p->tensor.width + (size_t)(f->x0 + x)] =
-                    im.pixels[((size_t)y * (size_t)im.width + (size_t)x) * (size_t)im.channels +
-                              (size_t)k];
-    image_finish(&im);
-    return true;
 }
 
 // ---- the file -----------------------------------------------------------------------------------
@@ -381,6 +320,9 @@ static struct json *describe(const struct precompute *p) {
     json_add_count(meta, "seed", o->job.seed);
     json_add_count(meta, "light samples", o->light_samples);
     json_add_count(meta, "lights", p->lights.count);
+    struct json *range = json_add_array(meta, "range");
+    json_append_count(range, o->first);
+    json_append_count(range, o->lights);
     json_add_text(meta, "packets", p->report->packets);
     json_add_count(meta, "bounces", 1);
     for (uint32_t i = 0; i < p->tensor.block_count; i++)
@@ -393,14 +335,29 @@ static struct json *describe(const struct precompute *p) {
     return meta;
 }
 
+// The first part of the work. What no light of a later range changes is in the first range.
+static bool make_fixed(struct precompute *p) {
+    const double start = time_seconds();
+    if (p->options->first > 0 || (p->marks && p->marks[0]))
+        return true;
+    const bool made = edit_fixed_render(&p->job, &p->plan, tensor_fixed(p->writer));
+    p->report->fixed_seconds = time_seconds() - start;
+    if (made && p->marks)
+        p->marks[0] = 1;
+    return made;
+}
+
 static bool write_tensor(struct precompute *p) {
     struct json *meta = describe(p);
     p->tensor.meta = meta;
-    p->writer = tensor_create(p->options->output, &p->tensor);
+    const size_t parts = (size_t)edit_pixels_regions(&p->pixels) + 1;
+    p->writer = p->options->resume
+                    ? tensor_create_kept(p->options->output, &p->tensor, parts, &p->marks)
+                    : tensor_create(p->options->output, &p->tensor);
     json_destroy(meta);
     if (!p->writer)
         return false;
-    bool whole = render_fixed(p);
+    bool whole = make_fixed(p);
     if (whole) {
         work_on_regions(p, NULL, edit_pixels_regions(&p->pixels), p->threads);
         take_counts(p);
@@ -412,7 +369,8 @@ static bool write_tensor(struct precompute *p) {
     if (whole)
         return tensor_finish(w);
     tensor_abandon(w);
-    log_error("stopped before the tensor was whole: %s is not written", p->options->output);
+    log_error("stopped before the tensor was whole: %s is not written%s", p->options->output,
+              p->marks ? "; the same command goes on" : "");
     return false;
 }
 
@@ -432,7 +390,7 @@ static void estimate(struct precompute *p) {
 static bool run(struct precompute *p) {
     const struct film_options *f = &p->job.film;
     struct light_loop **loops = mem_array((size_t)p->threads, sizeof(struct light_loop *));
-    make_lights(p);
+    edit_sky_init(&p->lights, p->job.world, p->options->first, p->options->lights, p->threads);
     make_loop(p);
     p->workers = mem_array((size_t)p->threads, sizeof *p->workers);
     for (int i = 0; i < p->threads; i++)
@@ -478,6 +436,7 @@ bool precompute_edit(const struct edit_options *o, struct edit_report *report) {
     const double start = time_seconds();
     *report = (struct edit_report){.packets = ""};
     p.threads = o->job.threads > 0 ? o->job.threads : thread_default_count();
+    accel_thread_init(); // tiny numbers of curves are the same in a process's first run and later
     if (!open_scene(&p))
         return false;
     const bool done = run(&p);

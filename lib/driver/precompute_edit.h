@@ -3,6 +3,10 @@
 //
 // What no edit changes (other surfaces, lights that are seen) is path-traced with direct light, in
 // the same positions of a pixel, and stands in the tensor's fixed picture.
+//
+// The lights' index is what samples are elsewhere: 400 lights are refined to 4000 by the range
+// 400:4000, a tensor of what changes, without what does not depend on them (other lights, the fixed
+// picture). Ranges that follow each other merge to the tensor of all (transport/tensor_remake.h).
 #pragma once
 
 #include "driver/edit_plan.h"
@@ -14,6 +18,7 @@ struct edit_options {
     const char *const *edit;       // materials to be turned into editable ones
     size_t edit_count;
     uint32_t lights;               // triangles of the sky
+    uint32_t first;                // only what more than so many of them change; 0: all
     uint32_t light_samples;        // of other lights, and of everything fixed, at each position
     const char *packets;           // "auto", "pixels", "lights" (integrator/light_loop.h)
     double tolerance;              // of shares (curve/overlap.h)
@@ -21,6 +26,7 @@ struct edit_options {
     bool as_points;                // triangles count as points, for comparison
     const char *output;
     enum tensor_storage storage;
+    bool resume;                   // go on from OUTPUT.part, and leave it there when stopped
     double most_memory;            // bytes for workers; 0: half of what there is
     bool dry_run;
     const char *command, *version;

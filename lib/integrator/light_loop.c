@@ -29,6 +29,19 @@ static void init_triangles(struct light_loop_scene *s) {
     }
 }
 
+static void init_positions(struct light_loop_scene *s) {
+    const struct light_loop_options *o = &s->options;
+    uint32_t n = 0;
+    s->seen = mem_array(o->lights->count, sizeof *s->seen);
+    s->first = mem_array((size_t)o->positions + 1, sizeof *s->first);
+    for (uint32_t p = 0; p < o->positions; p++) {
+        for (uint32_t i = 0; i < o->lights->count; i++)
+            if (light_loop_position(&o->lights->items[i], o->positions) == p)
+                s->seen[n++] = i;
+        s->first[p + 1] = n;
+    }
+}
+
 static void init_others(struct light_loop_scene *s) {
     const struct world *w = s->options.world;
     s->others = mem_array(w->light_count, sizeof *s->others);
@@ -54,7 +67,9 @@ struct light_loop_scene *light_loop_scene_create(const struct light_loop_options
     struct light_loop_scene *s = mem_array(1, sizeof *s);
     s->options = *options;
     init_triangles(s);
-    init_others(s);
+    init_positions(s);
+    if (!options->refines)
+        init_others(s);
     s->coefficients = mem_array(options->object_count, sizeof *s->coefficients);
     for (uint32_t i = 0; i < options->object_count; i++) {
         const struct form *f = options->objects[i].form;
@@ -72,6 +87,8 @@ void light_loop_scene_destroy(struct light_loop_scene *s) {
     mem_free(s->others);
     mem_free(s->triangles);
     mem_free(s->centres);
+    mem_free(s->seen);
+    mem_free(s->first);
     mem_free(s->coefficients);
     mem_free(s);
 }
@@ -115,7 +132,9 @@ static void init_overlaps(struct light_loop *l, uint32_t object) {
 struct light_loop *light_loop_create(const struct light_loop_scene *s) {
     struct light_loop *l = mem_array(1, sizeof *l);
     l->scene = s;
-    l->most = s->options.lights->count / s->options.positions + 1;
+    for (uint32_t p = 0; p < s->options.positions; p++)
+        if (s->first[p + 1] - s->first[p] > l->most)
+            l->most = s->first[p + 1] - s->first[p];
     l->overlaps = arena_alloc(&l->arena, (s->options.object_count + 1) * sizeof *l->overlaps);
     l->quotients = arena_alloc(&l->arena, (s->options.object_count + 1) * sizeof *l->quotients);
     for (uint32_t i = 0; i < s->options.object_count; i++)

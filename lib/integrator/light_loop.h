@@ -6,8 +6,8 @@
 //     T[j] += rho_q cos_i * light of triangle m * Delta(m, j)   for every triangle m that is not hidden
 //
 // Visibility, quotient and cosine are those of the triangle's centre, the share Delta is that of all
-// of it. A pixel is looked at in several positions, as the picture's filter places them; light m is
-// seen from position m mod their number, so that smooth edges cost no more rays. Lights that have a
+// of it. A pixel is looked at in several positions, as the picture's filter places them; each light is
+// seen from one of them, so that smooth edges cost no more rays. Lights that have a
 // place, or come from one direction, are sampled, in two halves.
 //
 // f_q and curves are not in the sums; textures, coverage and the filter's weights are.
@@ -40,6 +40,7 @@ struct light_loop_options {
     const struct sampler_type *sampler;
     uint32_t seed, positions;
     const struct light_triangles *lights;
+    bool refines; // the lights are what a list has more than another: only they are summed
     bool unshadowed; // nothing hides the triangles, for comparison
     bool as_points; // triangles count as points at their centres, for comparison
     double tolerance; // of shares (curve/overlap.h); 0: 1e-2
@@ -48,6 +49,12 @@ struct light_loop_options {
     uint32_t object_count;
     enum light_packets packets;
 };
+
+// The position that sees a light: neighbours in the sky are seen from different ones, and the same
+// triangle of another list from the same.
+static inline uint32_t light_loop_position(const struct light_triangle *l, uint32_t positions) {
+    return (uint32_t)(l->number % positions);
+}
 
 // What workers share.
 struct light_loop_scene;

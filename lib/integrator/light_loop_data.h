@@ -9,12 +9,22 @@ struct light_loop_scene {
     struct light_loop_options options;
     struct overlap_triangle *triangles; // of the lights, world space
     vec3 *centres;
+    uint32_t *seen, *first; // lights by position: those of p are seen[first[p]] to seen[first[p + 1]]
     uint32_t *coefficients;             // by object
     // Lights that are sampled.
     struct world_light *others;
     uint32_t other_count;
     struct light_choice choice;
 };
+
+// A light that a position sees, light_loop_end(s, p) just past the last.
+static inline const uint32_t *light_loop_first(const struct light_loop_scene *s, uint32_t position) {
+    return s->seen + s->first[position];
+}
+
+static inline const uint32_t *light_loop_end(const struct light_loop_scene *s, uint32_t position) {
+    return s->seen + s->first[position + 1];
+}
 
 // A surface of an object that a position of a pixel shows.
 struct visit {

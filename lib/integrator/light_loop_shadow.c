@@ -21,7 +21,10 @@ static void arrive(struct light_loop *l, size_t visit, uint32_t light, spectrum 
 static uint64_t shadow_pixels(struct light_loop *l, size_t first, uint32_t count) {
     const struct light_loop_options *o = &l->scene->options;
     uint64_t traced = 0;
-    for (uint32_t m = l->visits[first].position; m < o->lights->count; m += o->positions) {
+    const uint32_t position = l->visits[first].position;
+    const uint32_t *end = light_loop_end(l->scene, position);
+    for (const uint32_t *at = light_loop_first(l->scene, position); at < end; at++) {
+        const uint32_t m = *at;
         struct ray rays[ACCEL_PACKET];
         uint32_t active = 0;
         for (uint32_t i = 0; i < count; i++)
@@ -45,11 +48,12 @@ static uint64_t shadow_lights(struct light_loop *l, size_t visit) {
     uint32_t towards[ACCEL_PACKET], n = 0;
     struct ray rays[ACCEL_PACKET];
     uint64_t traced = 0;
-    for (uint32_t m = v->position; m < o->lights->count || n > 0; m += o->positions) {
-        const bool end = m >= o->lights->count;
-        if (!end && is_above(l, v, m)) {
-            towards[n] = m;
-            rays[n++] = ray_to(l, v, m);
+    const uint32_t *last = light_loop_end(l->scene, v->position);
+    for (const uint32_t *at = light_loop_first(l->scene, v->position); at < last || n > 0; at++) {
+        const bool end = at >= last;
+        if (!end && is_above(l, v, *at)) {
+            towards[n] = *at;
+            rays[n++] = ray_to(l, v, *at);
         }
         if (n < ACCEL_PACKET && !end)
             continue;
@@ -68,7 +72,9 @@ static uint64_t shadow_through(struct light_loop *l, size_t visit) {
     const struct light_loop_options *o = &l->scene->options;
     const struct visit *v = &l->visits[visit];
     uint64_t traced = 0;
-    for (uint32_t m = v->position; m < o->lights->count; m += o->positions) {
+    const uint32_t *end = light_loop_end(l->scene, v->position);
+    for (const uint32_t *at = light_loop_first(l->scene, v->position); at < end; at++) {
+        const uint32_t m = *at;
         if (!is_above(l, v, m))
             continue;
         const spectrum through = world_transmittance(o->world, ray_to(l, v, m), -1,
@@ -81,10 +87,11 @@ static uint64_t shadow_through(struct light_loop *l, size_t visit) {
 }
 
 static void arrive_everywhere(struct light_loop *l, size_t visit) {
-    const struct light_loop_options *o = &l->scene->options;
-    for (uint32_t m = l->visits[visit].position; m < o->lights->count; m += o->positions)
-        if (is_above(l, &l->visits[visit], m))
-            arrive(l, visit, m, spectrum_grey(1));
+    const struct visit *v = &l->visits[visit];
+    const uint32_t *end = light_loop_end(l->scene, v->position);
+    for (const uint32_t *at = light_loop_first(l->scene, v->position); at < end; at++)
+        if (is_above(l, v, *at))
+            arrive(l, visit, *at, spectrum_grey(1));
 }
 
 uint64_t light_loop_shadow(struct light_loop *l) {

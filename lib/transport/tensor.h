@@ -146,6 +146,11 @@ struct tensor_writer;
 // pointer is not NULL (it is not read). meta: what else is known, merged into the metadata. Atomic: the file
 // appears when the writer is closed. NULL after an error message.
 struct tensor_writer *tensor_create(const char *path, const struct tensor *shape);
+// The same for work that may be ended at any moment, even killed: the file is PATH.part until it is
+// closed, and if there is one of the same shape and metadata it is gone on with. *marks: for `parts`
+// parts of the work, to be set to 1 when one is done; those of the run before, or zeros.
+struct tensor_writer *tensor_create_kept(const char *path, const struct tensor *shape, size_t parts,
+                                         unsigned char **marks);
 // Where the parts of the file lie in memory, to be filled: zero at first, from any thread.
 void *tensor_values(struct tensor_writer *w, uint32_t block);
 void *tensor_halves(struct tensor_writer *w, uint32_t block);
@@ -154,4 +159,4 @@ float *tensor_fixed(struct tensor_writer *w);
 double *tensor_fixed_sums(struct tensor_writer *w);
 // Completes the file. false after an error message.
 bool tensor_finish(struct tensor_writer *w);
-void tensor_abandon(struct tensor_writer *w);
+void tensor_abandon(struct tensor_writer *w); // PATH.part stays

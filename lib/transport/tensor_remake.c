@@ -8,25 +8,28 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "transport/sample_ranges.h"
+#include "transport/tensor_parts.h"
 
 enum { ABSENT = UINT32_MAX };
 
 struct source {
     struct tensor_file *file;
     const struct tensor *tensor;
-    double share;   // of all samples
+    double share;   // of all samples; 1 where lights are summed
     uint32_t *lane; // by pixel of the old picture, of the block that is worked on
 };
 
 struct remake {
     const struct tensor_remake *options;
     struct source *sources;
+    const struct tensor **tensors; // of the sources
     struct tensor tensor; // the new one
     struct tensor_block *blocks;
     struct json *meta;
     struct arena arena;
     uint32_t crop[4];
-    bool exact; // ranges of samples of one seed, by their sums
+    bool exact;  // ranges of samples of one seed, by their sums
+    bool summed; // ranges of lights
     struct tensor_remade *result;
     double largest;
 };
@@ -48,10 +51,11 @@ static bool same_value(const struct json *a, const struct json *b) {
     return same;
 }
 
-// Whether what the coefficients mean is the same; samples and how they were made may differ.
-static bool same_meaning(const struct json *a, const struct json *b) {
+// What of the meaning of coefficients differs; NULL: nothing. Samples and how they were made may.
+static const char *other_meaning(const struct json *a, const struct json *b) {
     static const char *const free_keys[] = {"samples", "seed", "command", "program", "scene", "blocks",
-                                            "merged", "packets", "ranges", NULL};
+                                            "merged", "packets", "ranges", "range", "lights",
+                                            NULL};
     for (int side = 0; side < 2; side++) {
         const struct json *x = side ? b : a, *y = side ? a : b;
         for (size_t i = 0; i < json_count(x); i++) {
@@ -60,10 +64,10 @@ static bool same_meaning(const struct json *a, const struct json *b) {
             for (int k = 0; free_keys[k]; k++)
                 free = free || strcmp(free_keys[k], key) == 0;
             if (!free && !same_value(json_get(x, key), json_get(y, key)))
-                return false;
+                return key;
         }
     }
-    return true;
+    return NULL;
 }
 
 static bool same_axis(const struct tensor_axis *a, const struct tensor_axis *b) {
@@ -75,8 +79,7 @@ static bool same_axis(const struct tensor_axis *a, const struct tensor_axis *b) 
 static bool same_block(const struct tensor_block *a, const struct tensor_block *b) {
     bool same = strcmp(a->object, b->object) == 0 && strcmp(a->term, b->term) == 0 &&
                 a->axis_count == b->axis_count && a->groups == b->groups &&
-                a->coefficients == b->coefficients && !a->halves == !b->halves &&
-                !a->view == !b->view;
+                a->coefficients == b->coefficients && !a->view == !b->view;
     for (uint32_t i = 0; i < a->axis_count && same; i++)
         same = same_axis(&a->axes[i], &b->axes[i]);
     return same;
@@ -84,29 +87,20 @@ static bool same_block(const struct tensor_block *a, const struct tensor_block *
 
 static bool same_shape(const struct remake *r, size_t source) {
     const struct tensor *a = r->sources[0].tensor, *b = r->sources[source].tensor;
+    const char *other = other_meaning(a->meta, b->meta);
+    if (other) {
+        log_error("%s: is not of the same scene, objects and size as the first tensor: another \"%s\"",
+                  r->options->paths[source], other);
+        return false;
+    }
     if (a->width != b->width || a->height != b->height || a->block_count != b->block_count ||
-        !a->fixed != !b->fixed || !same_meaning(a->meta, b->meta))
+        !a->fixed != !b->fixed)
         return fail(r, source, "is not of the same scene, objects and size as the first tensor");
     for (uint32_t i = 0; i < a->block_count; i++)
-        if (!same_block(&a->blocks[i], &b->blocks[i]))
+        if (!same_block(&a->blocks[i], &b->blocks[i]) ||
+            (!r->summed && !a->blocks[i].halves != !b->blocks[i].halves))
             return fail(r, source, "has other blocks than the first tensor");
     return true;
-}
-
-static int64_t samples_of(const struct tensor *t) {
-    int64_t n = 0;
-    json_read_integer(json_get(t->meta, "samples"), &n);
-    return n;
-}
-
-// What a source is made of: its "merged", or itself.
-static size_t parts_of(const struct tensor *t, size_t i, int64_t *seed, int64_t *samples) {
-    const struct json *merged = json_get(t->meta, "merged");
-    const struct json *at = merged ? json_at(merged, i) : t->meta;
-    *seed = *samples = 0;
-    json_read_integer(json_get(at, "seed"), seed);
-    json_read_integer(json_get(at, "samples"), samples);
-    return merged ? json_count(merged) : 1;
 }
 
 // Ranges of samples of one seed that kept their sums unite to the bits of one run.
@@ -132,25 +126,6 @@ static bool unite_ranges(struct remake *r) {
     return good;
 }
 
-// Lists the parts of all sources. Two of one seed are not independent.
-static bool list_parts(struct remake *r) {
-    struct json *list = json_add_array(r->meta, "merged");
-    for (size_t s = 0; s < r->options->count; s++) {
-        int64_t seed, samples, other;
-        const size_t n = parts_of(r->sources[s].tensor, 0, &seed, &samples);
-        for (size_t i = 0; i < n; i++) {
-            parts_of(r->sources[s].tensor, i, &seed, &samples);
-            for (size_t k = 0; k < json_count(list); k++)
-                if (json_read_integer(json_get(json_at(list, k), "seed"), &other) && other == seed)
-                    return fail(r, s, "has a seed that is among the others: it adds nothing new");
-            struct json *part = json_append_object(list);
-            json_add_count(part, "seed", seed);
-            json_add_count(part, "samples", samples);
-        }
-    }
-    return true;
-}
-
 static bool open_sources(struct remake *r) {
     double all = 0;
     for (size_t s = 0; s < r->options->count; s++) {
@@ -158,17 +133,22 @@ static bool open_sources(struct remake *r) {
         source->file = tensor_open(r->options->paths[s]);
         if (!source->file)
             return false;
-        source->tensor = tensor_get(source->file);
+        r->tensors[s] = source->tensor = tensor_get(source->file);
+    }
+    r->summed = tensor_are_ranges(r->tensors, r->options->count);
+    for (size_t s = 0; s < r->options->count; s++) {
+        struct source *source = &r->sources[s];
         if (s > 0 && !same_shape(r, s))
             return false;
-        source->share = (double)samples_of(source->tensor);
+        source->share = (double)tensor_samples(source->tensor);
         if (r->options->count > 1 && !(source->share > 0))
             return fail(r, s, "does not tell its samples");
         all += source->share;
     }
     for (size_t s = 0; s < r->options->count; s++)
-        r->sources[s].share = r->options->count > 1 ? r->sources[s].share / all : 1;
-    r->result->samples = (uint64_t)all;
+        r->sources[s].share =
+            r->options->count > 1 && !r->summed ? r->sources[s].share / all : 1;
+    r->result->samples = (uint64_t)(r->summed ? all / (double)r->options->count : all);
     return true;
 }
 
@@ -284,7 +264,10 @@ static void shape_block(struct remake *r, uint32_t block) {
     *b = r->sources[0].tensor->blocks[block];
     b->pixel_count = count;
     b->storage = r->options->new_storage ? r->options->storage : b->storage;
-    b->halves = b->halves ? &some : NULL;
+    b->halves = NULL;
+    for (size_t s = 0; s < r->options->count; s++)
+        if (r->sources[s].tensor->blocks[block].halves)
+            b->halves = &some;
     b->sums = r->exact ? &some_sums : NULL;
     b->pixels = pixels;
     float *view = b->view ? arena_alloc(&r->arena, (tensor_tiles(b) + 1) * TENSOR_LANES * 4) : NULL;
@@ -363,9 +346,9 @@ static void fill(struct remake *r, uint32_t block, bool halves, void *out) {
             for (size_t s = 0; s < r->options->count; s++) {
                 const struct tensor_block *from = &r->sources[s].tensor->blocks[block];
                 const uint32_t lane = r->sources[s].lane[old];
-                if (lane != ABSENT)
-                    sum += r->sources[s].share * value_at(from, halves ? from->halves : from->values,
-                                                          place_of(from, lane, row));
+                const void *values = halves ? from->halves : from->values;
+                if (lane != ABSENT && values)
+                    sum += r->sources[s].share * value_at(from, values, place_of(from, lane, row));
             }
             put(r, b, out, place_of(b, i, row), sum);
         }
@@ -444,7 +427,9 @@ static bool remake(struct remake *r, const char *output) {
     r->exact = are_ranges(r);
     if (r->options->count > 1) {
         json_add_count(r->meta, "samples", (int64_t)r->result->samples);
-        if (r->exact ? !unite_ranges(r) : !list_parts(r))
+        if (!(r->exact ? unite_ranges(r)
+                       : (r->summed ? tensor_join_ranges : tensor_list_seeds)(
+                             r->tensors, r->options->paths, r->options->count, r->meta)))
             return false;
     }
     json_add_text(r->meta, "command", r->options->command);
@@ -461,12 +446,14 @@ bool tensor_remake(const struct tensor_remake *o, const char *output, struct ten
     struct remake r = {.options = o, .result = result};
     *result = (struct tensor_remade){0};
     r.sources = mem_array(o->count, sizeof *r.sources);
+    r.tensors = mem_array(o->count, sizeof(const struct tensor *));
     const bool done = remake(&r, output);
     for (size_t s = 0; s < o->count; s++) {
         tensor_close(r.sources[s].file);
         mem_free(r.sources[s].lane);
     }
     mem_free(r.sources);
+    mem_free(r.tensors);
     json_destroy(r.meta);
     arena_finish(&r.arena);
     return done;

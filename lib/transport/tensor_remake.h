@@ -4,8 +4,9 @@
 // Tensors of one scene that differ in their seeds merge to the exact mean, weighted by their samples
 // (in double, rounded once); halves too, so that the error told is that of the merged tensor. A list
 // of pixels becomes the union of the lists. Ranges of samples of one seed that kept their sums merge to
-// the bits of one run over all of them, and keep their sums; nothing else does. The metadata get "samples", their sum, and "merged",
-// [{"seed", "samples"}, ...], by which a tensor is refused that is already part of another.
+// the bits of one run over all of them, and keep their sums; nothing else does. Ranges of lights of one
+// seed, which follow each other without gap, merge to their sum (driver/precompute_edit.h: metadata
+// "range"). The metadata get "samples", their sum, and "merged", [{"seed", "samples"}, ...], by which a tensor is refused that is already part of another.
 #pragma once
 
 #include "transport/tensor.h"

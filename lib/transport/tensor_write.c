@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -17,7 +18,8 @@ enum { VERSION = 1 };
 struct tensor_writer {
     char path[4096], temp[4096];
     unsigned char *map;
-    size_t size;
+    size_t size, parts; // of the file; marks behind it while it is being made
+    bool kept;
     unsigned char *data;
     uint64_t *values, *halves, *sums; // offsets by block
     uint64_t fixed, fixed_sums;
@@ -161,11 +163,23 @@ static char *header_text(struct json *header, uint64_t *size) {
 
 // ---- file ---------------------------------------------------------------------------------------
 
-static bool map_file(struct tensor_writer *w) {
-    const int fd = open(w->temp, O_RDWR | O_CREAT | O_TRUNC, 0644);
+// Whether the file that is there is the same one, begun earlier.
+static bool was_begun(const struct tensor_writer *w, int fd, const char *header, uint64_t n) {
+    struct stat st;
+    bool same = w->kept && fstat(fd, &st) == 0 && st.st_size == (off_t)(w->size + w->parts);
+    char *there = mem_array(n + 1, 1);
+    same = same && pread(fd, there, n, 8) == (ssize_t)n && memcmp(there, header, n) == 0;
+    mem_free(there);
+    return same;
+}
+
+static bool map_file(struct tensor_writer *w, const char *header, uint64_t n) {
+    const size_t size = w->size + w->parts;
+    const int fd = open(w->temp, O_RDWR | O_CREAT, 0644);
+    int error = fd < 0 || (!was_begun(w, fd, header, n) && ftruncate(fd, 0) != 0) ? errno : 0;
     // Room is taken now: a full disk would otherwise end the process when a page is written.
-    int error = fd < 0 ? errno : posix_fallocate(fd, 0, (off_t)w->size);
-    void *map = error ? MAP_FAILED : mmap(NULL, w->size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+    error = error ? error : posix_fallocate(fd, 0, (off_t)size);
+    void *map = error ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
     if (!error && map == MAP_FAILED)
         error = errno;
     if (fd >= 0)
@@ -183,7 +197,7 @@ static bool write_plan(struct tensor_writer *w, const struct plan *p) {
     uint64_t n;
     char *text = header_text(p->header, &n);
     w->size = 8 + n + p->end;
-    const bool mapped = map_file(w);
+    const bool mapped = map_file(w, text, n);
     if (mapped) {
         memcpy(w->map, &n, sizeof n);
         memcpy(w->map + 8, text, n);
@@ -216,14 +230,12 @@ static bool make_file(struct tensor_writer *w) {
     return made;
 }
 
-struct tensor_writer *tensor_create(const char *path, const struct tensor *shape) {
-    struct tensor_writer *w = mem_array(1, sizeof *w);
+// Makes the file under its temporary name. NULL after an error message.
+static struct tensor_writer *begin(struct tensor_writer *w, const struct tensor *shape, bool named) {
     w->shape = shape;
     w->values = mem_array(shape->block_count, sizeof *w->values);
     w->halves = mem_array(shape->block_count, sizeof *w->halves);
     w->sums = mem_array(shape->block_count, sizeof *w->sums);
-    const bool named = snprintf(w->path, sizeof w->path, "%s", path) < (int)sizeof w->path &&
-                       file_temp_name(path, w->temp, sizeof w->temp);
     const bool made = named && make_file(w);
     w->shape = NULL;
     if (made)
@@ -231,6 +243,28 @@ struct tensor_writer *tensor_create(const char *path, const struct tensor *shape
     w->temp[0] = '\0';
     tensor_abandon(w);
     return NULL;
+}
+
+struct tensor_writer *tensor_create(const char *path, const struct tensor *shape) {
+    struct tensor_writer *w = mem_array(1, sizeof *w);
+    const bool named = snprintf(w->path, sizeof w->path, "%s", path) < (int)sizeof w->path &&
+                       file_temp_name(path, w->temp, sizeof w->temp);
+    return begin(w, shape, named);
+}
+
+struct tensor_writer *tensor_create_kept(const char *path, const struct tensor *shape, size_t parts,
+                                         unsigned char **marks) {
+    struct tensor_writer *w = mem_array(1, sizeof *w);
+    const bool named =
+        snprintf(w->temp, sizeof w->temp, "%s.part", path) < (int)sizeof w->temp &&
+        snprintf(w->path, sizeof w->path, "%s", path) < (int)sizeof w->path;
+    if (!named)
+        log_error("%s: name is too long", path);
+    w->kept = true;
+    w->parts = parts;
+    w = begin(w, shape, named);
+    *marks = w ? w->map + w->size : NULL;
+    return w;
 }
 
 void *tensor_values(struct tensor_writer *w, uint32_t block) {
@@ -254,7 +288,8 @@ double *tensor_fixed_sums(struct tensor_writer *w) {
 }
 
 bool tensor_finish(struct tensor_writer *w) {
-    const bool synced = msync(w->map, w->size, MS_SYNC) == 0;
+    const bool synced = msync(w->map, w->size, MS_SYNC) == 0 &&
+                        (!w->kept || truncate(w->temp, (off_t)w->size) == 0);
     if (!synced)
         log_error("%s: cannot be written: %s", w->path, strerror(errno));
     const bool written = synced && file_commit(w->temp, w->path);
@@ -266,8 +301,8 @@ bool tensor_finish(struct tensor_writer *w) {
 
 void tensor_abandon(struct tensor_writer *w) {
     if (w->map)
-        munmap(w->map, w->size);
-    if (w->temp[0])
+        munmap(w->map, w->size + w->parts);
+    if (w->temp[0] && !w->kept)
         file_discard(w->temp);
     mem_free(w->values);
     mem_free(w->halves);
