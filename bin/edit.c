@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume edit: a picture with other materials, from a tensor.
 #include <stdio.h>
-#include <string.h>
 
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/thread.h"
+#include "edit_session.h"
 #include "replay/edit_list.h"
-#include "replay/edit_script.h"
 #include "replay/measure.h"
 #include "replay/picture.h"
 #include "replay/save_scene.h"
@@ -59,66 +58,8 @@ static void more_help(void) {
         "\nOperators on curves (angles in degrees, full effect from b to c, none outside a to d):\n"
         "  amplify-y,a,b,c,d,FACTOR[,BASE]   translate-y,a,b,c,d,WAY   values\n"
         "  amplify-x,a,b,c,d,FACTOR[,BASE]   translate-x,a,b,c,d,WAY   angles\n"
-        "  several are separated by `;`\n"
-        "\nA session, EDITS.json:\n"
-        "  {\"focus\": true, \"terms\": 30,\n"
-        "   \"steps\": [{\"set\": \"cup.exponent=40\", \"write\": true},\n"
-        "             {\"op\": [\"cup.specular.f_A:amplify-y,0,5,10,20,1.5\"], \"frames\": 5},\n"
-        "             {\"curve\": \"cup.specular.f_A=lobe.csv\", \"settle\": true},\n"
-        "             {\"reset\": \"cup\"}]}\n"
-        "  A step makes its changes, then `frames` pictures (1); with `settle` until they are exact.\n"
-        "  `write`: the last one goes to OUT.0001.exr, with the number of the step. `focus` freezes\n"
-        "  what is not edited, `terms` is the most coefficients a frame may change (0: all).\n");
-}
-
-// ---- sessions -----------------------------------------------------------------------------------
-
-struct session {
-    const struct values *v;
-    const char *command;
-    const struct tensor *tensor;
-    struct json *frames;
-    size_t count;
-};
-
-static bool write_numbered(const struct session *s, size_t step, const float *frame) {
-    char path[4096];
-    const char *output = s->v->common.output;
-    if (!output) {
-        log_error("%s: step %zu writes a picture; expected -o OUT.exr", s->v->script, step + 1);
-        return false;
-    }
-    const char *point = strrchr(output, '.');
-    const int stem = point && !strchr(point, '/') ? (int)(point - output) : (int)strlen(output);
-    if (snprintf(path, sizeof path, "%.*s.%04zu%s", stem, output, step + 1, output + stem) >=
-        (int)sizeof path) {
-        log_error("%s: name is too long", output);
-        return false;
-    }
-    return picture_write(path, s->tensor, frame, NULL, s->command, RELUME_VERSION);
-}
-
-static bool on_frame(void *user, const struct edit_step *step, const struct edit_timing *t,
-                     const float *frame) {
-    struct session *s = user;
-    struct json *j = json_append_object(s->frames);
-    s->count++;
-    json_add_count(j, "step", (int64_t)t->step + 1);
-    json_add_count(j, "frame", t->frame + 1);
-    json_add_number(j, "change_seconds", t->change_seconds);
-    json_add_number(j, "switch_seconds", t->switch_seconds);
-    json_add_number(j, "frame_seconds", t->frame_seconds);
-    json_add_count(j, "coefficients", (int64_t)t->coefficients);
-    json_add_count(j, "bytes", (int64_t)t->bytes);
-    json_add_bool(j, "exact", t->exact);
-    if (!s->v->common.quiet && !s->v->common.json)
-        log_info("step %zu frame %u: change %.1f ms, switch %.1f ms, frame %.2f ms, %llu coefficients%s",
-                 t->step + 1, t->frame + 1, t->change_seconds * 1e3, t->switch_seconds * 1e3,
-                 t->frame_seconds * 1e3, (unsigned long long)t->coefficients,
-                 t->exact ? "" : ", not exact yet");
-    const bool last = step->settle ? t->exact && t->frame + 1 >= step->frames
-                                   : t->frame + 1 == step->frames;
-    return !step->write || !last || write_numbered(s, t->step, frame);
+        "  several are separated by `;`\n");
+    edit_session_help();
 }
 
 // ---- pictures -----------------------------------------------------------------------------------
@@ -139,9 +80,8 @@ static bool compose(void *ctx) {
     return edit_compose(e->edit, e->frame);
 }
 
-static bool make_picture(const struct session *s, struct evaluation *e, struct replay_timing *t,
-                         float *variance) {
-    const struct replay_values *c = &s->v->common;
+static bool make_picture(const struct replay_values *c, const struct edit_session *s,
+                         struct evaluation *e, struct replay_timing *t, float *variance) {
     const double start = time_seconds();
     if (!edit_settle(e->edit, e->frame))
         return false;
@@ -177,8 +117,8 @@ static bool save(const struct values *v, const struct edit_tensor *e) {
     return false;
 }
 
-static bool evaluate(struct session *s, const struct edit_script *script, struct json *out) {
-    const struct values *v = s->v;
+static bool evaluate(const struct values *v, struct edit_session *s,
+                     const struct edit_script *script, struct json *out) {
     const size_t plane = (size_t)s->tensor->width * s->tensor->height;
     const struct edit_settings o = {
         .no_device = v->common.no_device, .threads = v->common.threads, .focus = script->focus,
@@ -188,8 +128,8 @@ static bool evaluate(struct session *s, const struct edit_script *script, struct
     struct replay_timing timing = {0};
     struct evaluation evaluation = {e, frame};
     bool good = e && change_all(v, e) &&
-                edit_script_play(script, e, v->script, frame, on_frame, s);
-    good = good && (!v->common.output || make_picture(s, &evaluation, &timing, variance));
+                edit_script_play(script, e, v->script, frame, edit_session_frame, s);
+    good = good && (!v->common.output || make_picture(&v->common, s, &evaluation, &timing, variance));
     good = good && (!v->save || save(v, edit_objects(e)));
     if (good && v->common.output)
         replay_report(&v->common, &timing, out);
@@ -215,11 +155,12 @@ static bool list(const struct values *v, const struct tensor *t, struct json *ou
 
 static bool edit_file(const struct values *v, const char *command, const struct tensor *t) {
     struct json *out = json_new_object();
-    struct session s = {v, command, t, json_new_array(), 0};
+    struct edit_session s = {v->script, v->common.output, command, t, v->common.quiet,
+                             v->common.json, json_new_array()};
     struct edit_script script = {0};
     bool good = v->list ? list(v, t, out) : !v->script || edit_script_read(&script, v->script);
-    good = good && (v->list || evaluate(&s, &script, out));
-    for (size_t i = 0; i < s.count && good && v->common.json; i++)
+    good = good && (v->list || evaluate(v, &s, &script, out));
+    for (size_t i = 0; i < json_count(s.frames) && good && v->common.json; i++)
         json_print(json_at(s.frames, i), false);
     if (good && v->common.json)
         json_print(out, false);
