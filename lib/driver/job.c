@@ -86,6 +86,8 @@ static bool prepare_integrator(const struct job_options *o, struct scene *s, str
     if (type->prepare && !type->prepare(s->integrator, &wants))
         return false;
     world_choose_lights(w, wants.light_choice);
+    if (!integrator_enter(s->integrator, w, &s->arena))
+        return false;
     film->moments = wants.moments;
     film->aovs |= wants.aovs;
     return true;

@@ -10,10 +10,10 @@
 
 #include "base/thread.h"
 #include "curve/wavelet.h"
-#include "math/quadrature.h"
+#include "sink/lighting.h"
 #include "sink/tensor_sums.h"
 
-enum { HALVES = 2, FINE_WIDTH = 4096, TILES_BETWEEN_REPORTS = 8, DRY_TILES = 4 };
+enum { HALVES = 2, TILES_BETWEEN_REPORTS = 8, DRY_TILES = 4 };
 
 struct basis {
     struct source_basis source;
@@ -59,76 +59,15 @@ static bool parse_basis(const char *text, struct basis *b) {
     return false;
 }
 
-// Radiance of all infinite lights from a direction.
-static void radiance_from(const struct world *w, const double d[3], double rgb[3]) {
-    const struct light_hit hit = {.wi = v3((float)d[0], (float)d[1], (float)d[2]),
-                                  .distance = INFINITY};
-    rgb[0] = rgb[1] = rgb[2] = 0;
-    for (uint32_t i = 0; i < w->infinite_count; i++) {
-        const struct world_light *l = &w->lights[w->infinite[i]];
-        const spectrum e = l->type->emission(l->data, &hit);
-        for (int c = 0; c < 3; c++)
-            rgb[c] += (double)e[c];
+static spectrum radiance_from(const void *ctx, vec3 w) {
+    const struct world *world = ctx;
+    const struct light_hit hit = {.wi = w, .distance = INFINITY};
+    spectrum sum = spectrum_grey(0);
+    for (uint32_t i = 0; i < world->infinite_count; i++) {
+        const struct world_light *l = &world->lights[world->infinite[i]];
+        sum += l->type->emission(l->data, &hit);
     }
-}
-
-// Means of the environment over the cells of a grid, [channel][cell]. Cells are sampled about as
-// finely as the texels of any environment that is in use.
-static double *cells_of_environment(const struct world *w, int width, int height) {
-    const int n = width < FINE_WIDTH / 2 ? FINE_WIDTH / width : 2;
-    double *cells = mem_array((size_t)(3 * width * height), sizeof *cells);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
-            for (int j = 0; j < n; j++)
-                for (int i = 0; i < n; i++) {
-                    // Rows of equal solid angle inside the cell.
-                    const double top = cos(M_PI * y / height), end = cos(M_PI * (y + 1) / height);
-                    const double c = top + (end - top) * (j + 0.5) / n;
-                    double d[3], rgb[3];
-                    latlong_direction(x + (i + 0.5) / n, acos(c) / M_PI * height, width,
-                                      height, d);
-                    radiance_from(w, d, rgb);
-                    for (int k = 0; k < 3; k++)
-                        cells[(k * height + y) * width + x] += rgb[k] / ((double)n * n);
-                }
-    return cells;
-}
-
-static void weights_of_cells(const struct world *w, struct basis *b) {
-    const struct source_basis *s = &b->source;
-    const size_t longest = (size_t)(s->width > s->height ? s->width : s->height);
-    double *cells = cells_of_environment(w, s->width, s->height);
-    double *scratch = mem_array(2 * longest, sizeof *scratch);
-    for (uint32_t k = 0; k < 3; k++) {
-        if (s->transformed)
-            wavelet_forward_matrix(s->wavelet, cells + (size_t)k * s->count, (size_t)s->height,
-                                   (size_t)s->width, scratch);
-        for (uint32_t i = 0; i < s->count; i++)
-            b->weights[3 * i + k] = (float)cells[(size_t)k * s->count + i];
-    }
-    mem_free(scratch);
-    mem_free(cells);
-}
-
-// Projection: radiance times Y_lm over the sphere; exact for an environment of low order.
-static void weights_of_harmonics(const struct world *w, struct basis *b) {
-    enum { WIDTH = 1024, HEIGHT = 512 };
-    double *sum = mem_array((size_t)b->source.count * 3, sizeof *sum);
-    double nodes[HEIGHT], shares[HEIGHT];
-    gauss_legendre(HEIGHT, nodes, shares);
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++) {
-            double d[3], rgb[3], sh[SOURCE_MOST_SH];
-            latlong_direction(x + 0.5, acos(1 - 2 * nodes[y]) / M_PI * HEIGHT, WIDTH, HEIGHT, d);
-            radiance_from(w, d, rgb);
-            spherical_harmonics(d, b->source.order, sh);
-            for (uint32_t i = 0; i < b->source.count; i++)
-                for (int k = 0; k < 3; k++)
-                    sum[3 * i + (uint32_t)k] += rgb[k] * sh[i] * shares[y] * 4 * M_PI / WIDTH;
-        }
-    for (uint32_t i = 0; i < 3 * b->source.count; i++)
-        b->weights[i] = (float)sum[i];
-    mem_free(sum);
+    return sum;
 }
 
 static bool set_weights(struct basis *b, const struct job *job) {
@@ -144,10 +83,8 @@ static bool set_weights(struct basis *b, const struct job *job) {
     if (s->kind == SOURCE_LIGHTS)
         for (uint32_t i = 0; i < 3 * s->count; i++)
             b->weights[i] = 1;
-    else if (s->kind == SOURCE_PIXELS)
-        weights_of_cells(job->world, b);
     else
-        weights_of_harmonics(job->world, b);
+        lighting_project(s, &(struct sky){radiance_from, job->world, 0}, b->weights);
     return true;
 }
 

@@ -22,3 +22,15 @@ bool integrator_meters(const struct object *integrator) {
         }
     return meters;
 }
+
+bool integrator_enter(struct object *integrator, const struct world *w, struct arena *arena) {
+    const struct integrator_type *type = integrator_type_of(integrator);
+    bool good = !type->enter || type->enter(integrator, w, arena);
+    for (const struct param *p = integrator->type->params; p && p->name && good; p++)
+        if (p->type == PARAM_INTEGRATOR) {
+            struct object *nested;
+            memcpy(&nested, (const char *)integrator->data + p->offset, sizeof nested);
+            good = !nested || integrator_enter(nested, w, arena);
+        }
+    return good;
+}

@@ -55,6 +55,9 @@ struct integrator_type {
     // Checks the parameters. false after an error message. NULL: nothing to do.
     bool (*prepare)(struct object *self, struct integrator_wants *wants);
     void (*trace)(const void *data, struct trace_context *ctx, const struct path_start *starts);
+    // Looks at the world before anything is traced; what it makes lives in the arena. false after an
+    // error message. NULL: nothing to do. (integrator_enter reaches nested ones.)
+    bool (*enter)(struct object *self, const struct world *w, struct arena *arena);
     uint32_t most_lanes; // of one call; 0: SINK_LANES
     bool sees_media;
     bool meters; // heeds path_start.surface, or its nested integrator does
@@ -81,6 +84,9 @@ extern const struct object integrator_first_hits;
 
 // Whether an integrator, with what is nested in it, can begin paths at path_start.surface.
 bool integrator_meters(const struct object *integrator);
+
+// Lets an integrator and what is nested in it look at the world.
+bool integrator_enter(struct object *integrator, const struct world *w, struct arena *arena);
 
 static inline const struct integrator_type *integrator_type_of(const struct object *o) {
     return (const struct integrator_type *)o->type;
