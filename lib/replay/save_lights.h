@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lighting of a relighting tensor's picture written back: a copy of a Mitsuba XML scene with other
+// lights.
+//
+// Factors of lights change the numbers of their emitters: radiance, intensity, irradiance, scale; so
+// must those of a `group` name. Another environment takes the place of all that were there.
+#pragma once
+
+#include "replay/relight.h"
+
+// scene: the file that the tensor was made of. false after an error message.
+bool save_lights(const struct relight_lighting *l, const char *scene, const char *output);
