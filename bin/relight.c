@@ -7,14 +7,16 @@
 #include "replay/picture.h"
 #include "replay/relight.h"
 #include "replay/replay.h"
+#include "replay/save_lights.h"
+#include "relight_frames.h"
 #include "replay_report.h"
 #include "subcommand.h"
 
 struct values {
-    const char *tensor, *environment;
+    const char *tensor, *environment, *save, *scene;
     struct replay_values common;
-    double rotate;
-    int terms;
+    double rotate, turn;
+    int terms, frames;
     struct option_list lights;
 };
 
@@ -27,8 +29,7 @@ static const struct option_argument arguments[] = {
 
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(common.output),
-     .argument = "OUT.exr",
-     .help = "the picture to write", .required = true},
+     .argument = "OUT.exr", .help = "the picture to write"},
     {.name = "env", .letter = 'e', .type = OPTION_TEXT, .offset = AT(environment), .argument = "FILE",
      .help = "environment, latitude-longitude, in place of the scene's own"},
     {.name = "rotate", .type = OPTION_NUMBER, .offset = AT(rotate), .argument = "DEG", .min = -1e6,
@@ -36,7 +37,17 @@ static const struct option_spec options[] = {
     {.name = "light", .letter = 'l', .type = OPTION_TEXTS, .offset = AT(lights),
      .argument = "NAME=R,G,B", .help = "factors of a light or group (basis lights); NAME=X for all three"},
     {.name = "terms", .type = OPTION_INT, .offset = AT(terms), .argument = "N", .min = 0,
-     .max = 1 << 28, .def = "0", .help = "keep the N largest terms of the lighting; 0: all"},
+     .max = 1 << 28, .def = "0",
+     .help = "keep the N largest terms of the lighting; 0: all. With --frames: change N\n"
+             "terms a frame, those that matter most"},
+    {.name = "frames", .type = OPTION_INT, .offset = AT(frames), .argument = "N", .min = 0,
+     .max = 9999, .def = "0", .help = "pictures OUT.0001.exr to OUT.N.exr of the environment as it turns"},
+    {.name = "turn", .type = OPTION_NUMBER, .offset = AT(turn), .argument = "DEG", .min = -360,
+     .max = 360, .def = "5", .help = "from each of them to the next"},
+    {.name = "save-scene", .type = OPTION_TEXT, .offset = AT(save), .argument = "OUT.xml",
+     .help = "write the scene with this lighting"},
+    {.name = "scene", .type = OPTION_TEXT, .offset = AT(scene), .argument = "SCENE.xml",
+     .help = "where the tensor's scene is, for --save-scene, if not where it was"},
     REPLAY_OPTIONS(struct values, common),
     OPTION_END,
 };
@@ -87,27 +98,48 @@ static bool relight(const struct values *v, const char *command, const struct te
     return done;
 }
 
+static bool save(const struct values *v, const struct tensor *t, const struct relight_lighting *l) {
+    const char *scene = v->scene ? v->scene : json_text(json_get(t->meta, "scene"));
+    if (scene)
+        return save_lights(l, scene, v->save);
+    log_error("%s: does not tell its scene; expected --scene", v->tensor);
+    return false;
+}
+
+// What was asked for of a lighting.
+static bool relight_file(const struct values *v, const char *command, const struct tensor *t) {
+    struct relight_lighting lighting = {
+        .environment = v->environment, .rotate = v->rotate, .lights = v->lights.items,
+        .light_count = v->lights.count, .terms = v->frames ? 0 : (uint32_t)v->terms};
+    const struct relight_frames frames = {
+        .tensor = t, .path = v->tensor, .output = v->common.output, .command = command,
+        .count = v->frames, .terms = (uint32_t)v->terms, .turn = v->turn,
+        .no_device = v->common.no_device, .threads = v->common.threads};
+    const size_t count = t->block_count ? t->blocks[0].coefficients : 0;
+    float *weights = mem_array(3 * count, sizeof *weights);
+    bool done = relight_weights(t, v->tensor, &lighting, weights);
+    if (done && v->common.output && !v->frames) {
+        struct replay *r = replay_create(t, &(struct replay_options){
+            .no_device = v->common.no_device, .threads = v->common.threads});
+        done = r && relight(v, command, t, r, weights);
+        replay_destroy(r);
+    }
+    done = done && (!v->frames || relight_frames_write(&frames, &lighting));
+    done = done && (!v->save || save(v, t, &lighting));
+    mem_free(weights);
+    return done;
+}
+
 static int run(const void *values, const char *command) {
     const struct values *v = values;
-    const struct relight_lighting lighting = {
-        .environment = v->environment, .rotate = v->rotate, .lights = v->lights.items,
-        .light_count = v->lights.count, .terms = (uint32_t)v->terms};
+    if ((!v->common.output && !v->save) || (v->frames && (!v->common.output || !v->environment))) {
+        log_error("relight: expected -o OUT.exr or --save-scene OUT.xml; with --frames, -o and --env");
+        return EXIT_USAGE;
+    }
     if (v->common.quiet)
         log_set_level(LOG_WARN);
     struct tensor_file *f = tensor_open(v->tensor);
-    if (!f)
-        return EXIT_FAILED;
-    const struct tensor *t = tensor_get(f);
-    const size_t count = t->block_count ? t->blocks[0].coefficients : 0;
-    float *weights = mem_array(3 * count, sizeof *weights);
-    struct replay *r = NULL;
-    bool done = relight_weights(t, v->tensor, &lighting, weights);
-    if (done)
-        r = replay_create(t, &(struct replay_options){.no_device = v->common.no_device,
-                                                          .threads = v->common.threads});
-    done = r && relight(v, command, t, r, weights);
-    replay_destroy(r);
-    mem_free(weights);
+    const bool done = f && relight_file(v, command, tensor_get(f));
     tensor_close(f);
     return done ? EXIT_DONE : EXIT_FAILED;
 }
@@ -121,6 +153,8 @@ const struct subcommand subcommand_relight = {
                                "it. Without options: under the scene's own.",
                 .examples = "  relume relight room.safetensors -o evening.exr --light lamp=3,2,1 "
                             "--light sky=0.1\n"
-                            "  relume relight car.safetensors -o car.exr --env grace.exr --rotate 40\n"},
+                            "  relume relight car.safetensors -o car.exr --env grace.exr --rotate 40\n"
+                            "  relume relight car.safetensors -o turn.exr --env grace.exr --frames 3 "
+                            "--terms 100\n"},
     .run = run,
 };

@@ -6,9 +6,9 @@
 
 #include "base/log.h"
 #include "base/mem.h"
-#include "base/thread.h"
 #include "curve/wavelet.h"
 #include "kernels/tile.h"
+#include "replay/importance.h"
 #include "replay/tiles.h"
 
 enum { CHANNELS = TILE_CHANNELS, ROW = TILE_CHANNELS * TILE_LANES };
@@ -49,24 +49,6 @@ float *edit_stage_values(struct edit_stage_block *b, size_t floats) {
 
 // ---- wavelets -----------------------------------------------------------------------------------
 
-struct means {
-    const float *values;
-    size_t tiles, coefficients, lanes;
-    double *out;
-};
-
-static void root_mean_square(void *ctx, size_t coefficient, int worker) {
-    const struct means *m = ctx;
-    double sum = 0;
-    (void)worker;
-    for (size_t tile = 0; tile < m->tiles; tile++) {
-        const float *row = m->values + (tile * m->coefficients + coefficient) * ROW;
-        for (int i = 0; i < ROW; i++)
-            sum += (double)row[i] * (double)row[i];
-    }
-    m->out[coefficient] = sqrt(sum / (double)(CHANNELS * m->lanes));
-}
-
 void edit_stage_transform(struct edit_stage *s, uint32_t block, uint32_t runs, uint32_t bins,
                           int threads) {
     enum { TILES_AT_ONCE = 64 };
@@ -85,10 +67,10 @@ void edit_stage_transform(struct edit_stage *s, uint32_t block, uint32_t runs, u
         b->runs = runs;
         b->bins = bins;
     }
-    struct means m = {values, tiles, n, t->pixel_count, mem_array(n, sizeof(double))};
-    thread_for(threads, n, root_mean_square, &m);
-    b->importance = m.out;
-    b->effective = (struct incremental){n, CHANNELS, mem_array(CHANNELS * n, sizeof(double)), m.out};
+    b->importance = mem_array(n, sizeof *b->importance);
+    importance_of(t, threads, b->importance);
+    b->effective = (struct incremental){n, CHANNELS, mem_array(CHANNELS * n, sizeof(double)),
+                                        b->importance};
     b->index = mem_array(s->terms, sizeof *b->index);
     b->difference = mem_array(CHANNELS * (size_t)s->terms, sizeof *b->difference);
     b->order = mem_array(n, sizeof *b->order);

@@ -67,10 +67,14 @@ static bool make_chunks(struct replay *r, struct replay_block *b) {
 
 static bool prepare_block(struct replay *r, struct replay_block *b) {
     const size_t tiles = tensor_tiles(b->tensor), weights = (size_t)b->tensor->coefficients * 3 * 4;
+    const size_t bytes = tiles * REPLAY_ROW * sizeof *b->sums;
     b->sums = mem_array(tiles * REPLAY_ROW, sizeof *b->sums);
+    b->layers = r->layers > 1 ? mem_array(r->layers * tiles * REPLAY_ROW, sizeof *b->layers) : b->sums;
     if (!r->device || tiles == 0)
         return true;
-    b->out = compute_buffer_create(r->device, tiles * REPLAY_ROW * sizeof *b->sums);
+    b->out = compute_buffer_create(r->device, r->layers * bytes);
+    if (r->layers > 1 && !(b->total = compute_buffer_create(r->device, bytes)).handle)
+        return false;
     b->weights = compute_buffer_create(r->device, weights);
     b->terms = compute_buffer_create(r->device, (size_t)b->tensor->coefficients * 4);
     return b->out.handle && b->weights.handle && b->terms.handle && make_chunks(r, b);
@@ -87,6 +91,7 @@ struct replay *replay_create(const struct tensor *t, const struct replay_options
     struct replay *r = mem_array(1, sizeof *r);
     r->tensor = t;
     r->threads = options->threads;
+    r->layers = options->layers ? options->layers : 1;
     r->borrowed = options->share != NULL;
     r->device = r->borrowed ? options->share->device : options->no_device ? NULL : compute_open();
     if (r->device)
@@ -116,6 +121,9 @@ void replay_destroy(struct replay *r) {
         compute_buffer_destroy(&b->out);
         compute_buffer_destroy(&b->weights);
         compute_buffer_destroy(&b->terms);
+        compute_buffer_destroy(&b->total);
+        if (b->layers != b->sums)
+            mem_free(b->layers);
         mem_free(b->chunks);
         mem_free(b->sums);
     }
@@ -133,7 +141,8 @@ const char *replay_device(const struct replay *r) {
 
 // Runs a kernel over all chunks of a block; its arguments 0, out_at and out_at + 1 are set here.
 static bool run_chunks(struct replay *r, struct replay_block *b, const char *kernel,
-                       const struct compute_arg *args, uint32_t count, uint32_t out_at) {
+                       const struct compute_arg *args, uint32_t count, uint32_t out_at,
+                       uint32_t layer) {
     struct compute_arg a[8];
     struct compute_kernel *k = replay_kernel(r, b, "dot", kernel);
     if (!k)
@@ -145,7 +154,7 @@ static bool run_chunks(struct replay *r, struct replay_block *b, const char *ker
             return false;
         a[0] = COMPUTE_BUFFER(&c->values);
         a[out_at] = COMPUTE_BUFFER(&b->out);
-        a[out_at + 1] = COMPUTE_UINT((uint32_t)c->first);
+        a[out_at + 1] = COMPUTE_UINT((uint32_t)(c->first + layer * tensor_tiles(b->tensor)));
         if (!compute_run(r->device, k, c->tiles, a, count))
             return false;
         replay_close_chunk(c);
@@ -160,7 +169,7 @@ bool replay_product(struct replay *r, uint32_t block, const float *weights) {
     if (tensor_tiles(t) == 0)
         return true;
     if (!r->device) {
-        tiles_dot(t->values, t->storage, weights, t->coefficients, tensor_tiles(t), b->sums,
+        tiles_dot(t->values, t->storage, weights, t->coefficients, tensor_tiles(t), b->layers,
                   r->threads);
         return true;
     }
@@ -168,18 +177,24 @@ bool replay_product(struct replay *r, uint32_t block, const float *weights) {
                                        COMPUTE_UINT(t->coefficients), COMPUTE_BUFFER(NULL),
                                        COMPUTE_UINT(0)};
     return compute_write(r->device, &b->weights, 0, weights, (size_t)t->coefficients * 3 * 4) &&
-           run_chunks(r, b, "dot", args, 5, 3);
+           run_chunks(r, b, "dot", args, 5, 3, 0);
 }
 
 bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, const float *weights,
                    uint32_t count) {
+    return replay_update_layer(r, block, 0, terms, weights, count);
+}
+
+bool replay_update_layer(struct replay *r, uint32_t block, uint32_t layer, const uint32_t *terms,
+                         const float *weights, uint32_t count) {
     struct replay_block *b = &r->blocks[block];
     const struct tensor_block *t = b->tensor;
     if (tensor_tiles(t) == 0 || count == 0)
         return true;
     if (!r->device) {
         tiles_add_terms(t->values, t->storage, weights, terms, count, t->coefficients,
-                        tensor_tiles(t), b->sums, r->threads);
+                        tensor_tiles(t), b->layers + layer * tensor_tiles(t) * REPLAY_ROW,
+                        r->threads);
         return true;
     }
     const struct compute_arg args[] = {
@@ -187,18 +202,44 @@ bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, cons
         COMPUTE_UINT(count), COMPUTE_UINT(t->coefficients), COMPUTE_BUFFER(NULL), COMPUTE_UINT(0)};
     return compute_write(r->device, &b->weights, 0, weights, (size_t)count * 3 * 4) &&
            compute_write(r->device, &b->terms, 0, terms, (size_t)count * 4) &&
-           run_chunks(r, b, "add_terms", args, 7, 5);
+           run_chunks(r, b, "add_terms", args, 7, 5, layer);
+}
+
+bool replay_clear_layer(struct replay *r, uint32_t block, uint32_t layer) {
+    struct replay_block *b = &r->blocks[block];
+    const size_t tiles = tensor_tiles(b->tensor);
+    if (!r->device || tiles == 0) {
+        memset(b->layers + layer * tiles * REPLAY_ROW, 0, tiles * REPLAY_ROW * sizeof *b->layers);
+        return true;
+    }
+    const struct compute_arg args[] = {COMPUTE_BUFFER(&b->out), COMPUTE_UINT((uint32_t)(layer * tiles))};
+    struct compute_kernel *k = compute_kernel(r->device, "layers", "clear_layer");
+    b->dirty = true;
+    return k && compute_run(r->device, k, tiles, args, 2);
 }
 
 bool replay_wait(struct replay *r) {
     return !r->device || compute_wait(r->device);
 }
 
+static bool add_layers_on_device(struct replay *r, struct replay_block *b) {
+    const size_t tiles = tensor_tiles(b->tensor);
+    struct compute_kernel *k = compute_kernel(r->device, "layers", "add_layers");
+    const struct compute_arg args[] = {COMPUTE_BUFFER(&b->out), COMPUTE_UINT(r->layers),
+                                       COMPUTE_UINT((uint32_t)tiles), COMPUTE_BUFFER(&b->total)};
+    return k && compute_run(r->device, k, tiles, args, 4);
+}
+
 static bool fetch(struct replay *r, struct replay_block *b) {
+    const bool layered = r->layers > 1;
+    if (!r->device && layered)
+        tiles_add_layers(b->layers, r->layers, tensor_tiles(b->tensor), b->sums, r->threads);
     if (!b->dirty)
         return true;
     b->dirty = false;
-    return compute_read(r->device, &b->out, 0, b->sums,
+    if (layered && !add_layers_on_device(r, b))
+        return false;
+    return compute_read(r->device, layered ? &b->total : &b->out, 0, b->sums,
                         tensor_tiles(b->tensor) * REPLAY_ROW * sizeof *b->sums);
 }
 

@@ -16,6 +16,7 @@ struct replay_options {
     int threads;        // 0: default
     size_t most_memory; // bytes of values that stay on the device; 0: what it has
     const struct replay *share; // use the device of this one, which must outlive it; NULL: open one
+    uint32_t layers;    // of sums a block keeps, which add up to it; 0: 1
 };
 
 // The tensor must outlive it. NULL after an error message.
@@ -23,11 +24,15 @@ struct replay *replay_create(const struct tensor *t, const struct replay_options
 void replay_destroy(struct replay *r); // NULL is fine
 const char *replay_device(const struct replay *r); // "C, 2 threads" without one
 
-// The block's sums for weights[coefficient][channel]. false after an error message (device lost).
+// The block's sums (its first layer) for weights[coefficient][channel]. false after an error message (device lost).
 bool replay_product(struct replay *r, uint32_t block, const float *weights);
 // Adds weights of a few terms to the block's sums.
 bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, const float *weights,
                    uint32_t count);
+// The same for one layer of the block's sums; and beginning one anew, at zero.
+bool replay_update_layer(struct replay *r, uint32_t block, uint32_t layer, const uint32_t *terms,
+                         const float *weights, uint32_t count);
+bool replay_clear_layer(struct replay *r, uint32_t block, uint32_t layer);
 // Fewer coefficients in place of a block's (replay/tiles.h): out[tile][reduced][channel][lane].
 bool replay_contract(struct replay *r, uint32_t block, const struct contraction *c, float *out);
 // Waits until what was asked for is done.

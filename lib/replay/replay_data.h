@@ -17,11 +17,13 @@ struct replay_chunk {
 
 struct replay_block {
     const struct tensor_block *tensor;
-    float *sums; // [tile][channel][lane]
+    float *sums;   // [tile][channel][lane]
+    float *layers; // [layer][tile][channel][lane]; sums where there is one layer
     struct replay_chunk *chunks;
     size_t chunk_count;
     bool dirty; // sums are on the device, not here
-    struct compute_buffer out, weights, terms;
+    struct compute_buffer out, weights, terms; // out: the layers
+    struct compute_buffer total;               // of the layers, where there are more than one
 };
 
 struct replay {
@@ -29,6 +31,7 @@ struct replay {
     struct compute_device *device; // NULL: twins
     bool borrowed;                 // the device is another's
     int threads;
+    uint32_t layers;
     size_t room; // bytes of the device that are left for values
     char name[300];
     struct replay_block *blocks;

@@ -67,6 +67,28 @@ void tiles_add_terms(const void *t, enum tensor_storage storage, const float *we
     thread_for(threads, tiles, add_terms_tile, &r);
 }
 
+struct layers {
+    const float *from;
+    uint32_t count;
+    size_t tiles;
+    float *out;
+};
+
+static void add_layers_tile(void *ctx, size_t tile, int worker) {
+    const struct layers *l = ctx;
+    float sum[ROW] = {0};
+    (void)worker;
+    for (size_t k = 0; k < l->count; k++)
+        for (size_t i = 0; i < ROW; i++)
+            sum[i] += l->from[(k * l->tiles + tile) * ROW + i];
+    memcpy(l->out + tile * ROW, sum, sizeof sum);
+}
+
+void tiles_add_layers(const float *layer, uint32_t layers, size_t tiles, float *out, int threads) {
+    struct layers l = {layer, layers, tiles, out};
+    thread_for(threads, tiles, add_layers_tile, &l);
+}
+
 static void contract_tile(void *ctx, size_t tile, int worker) {
     const struct run *r = ctx;
     const struct contraction *c = r->contraction;

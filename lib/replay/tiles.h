@@ -16,6 +16,9 @@ void tiles_add_terms(const void *t, enum tensor_storage storage, const float *we
                      const uint32_t *term, uint32_t terms, uint32_t coefficients, size_t tiles,
                      float *out, int threads);
 
+// out[tile][channel][lane] = sum_l layer[l][tile][channel][lane]
+void tiles_add_layers(const float *layer, uint32_t layers, size_t tiles, float *out, int threads);
+
 // A linear map of coefficients to fewer ones: number r is the sum of weight[i] times coefficient
 // index[i] over start[r] <= i < start[r + 1].
 struct contraction {

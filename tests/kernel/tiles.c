@@ -166,6 +166,35 @@ static void add_terms(struct fixture *f, enum tensor_storage s) {
     mem_free(start), mem_free(twin), mem_free(truth), mem_free(size);
 }
 
+// A layer that is cleared and all of them added up.
+static void layers(struct fixture *f) {
+    enum { LAYERS = 5, CLEARED = 2 };
+    const size_t n = (size_t)TILES * ROW;
+    float *start = random_floats(LAYERS * n), *twin = mem_array(n, sizeof *twin);
+    float *zero = mem_array(n, sizeof *zero), *cleared = mem_array(LAYERS * n, sizeof *cleared);
+    double worst = 0;
+    memcpy(cleared, start, LAYERS * n * sizeof *cleared);
+    memset(cleared + CLEARED * n, 0, n * sizeof *cleared);
+    tiles_add_layers(cleared, LAYERS, TILES, twin, 2);
+    for (size_t i = 0; i < n; i++) {
+        double truth = 0;
+        for (size_t l = 0; l < LAYERS; l++)
+            truth += l == CLEARED ? 0 : (double)start[l * n + i];
+        worst = fmax(worst, fabs(truth - (double)twin[i]));
+    }
+    CHECK(worst < 1e-6);
+    if (f->device) {
+        struct compute_buffer l = to_device(f, cleared, LAYERS * n * sizeof *cleared);
+        struct compute_arg args[] = {COMPUTE_BUFFER(&l), COMPUTE_UINT(LAYERS), COMPUTE_UINT(TILES),
+                                     COMPUTE_BUFFER(NULL)};
+        struct compute_arg clear[] = {COMPUTE_BUFFER(NULL), COMPUTE_UINT(CLEARED * TILES)};
+        kernel_agrees(f, "layers", "add_layers", args, 4, TILES, zero, twin, n);
+        kernel_agrees(f, "layers", "clear_layer", clear, 2, TILES, start, cleared, LAYERS * n);
+        compute_buffer_destroy(&l);
+    }
+    mem_free(start), mem_free(twin), mem_free(zero), mem_free(cleared);
+}
+
 // Lists of different lengths, none and long ones among them, with coefficients in any order.
 static void contract(struct fixture *f, enum tensor_storage s) {
     enum { REDUCED = 21, MOST = 40, ALL = REDUCED * MOST };
@@ -318,6 +347,7 @@ int main(void) {
         contract(&f, (enum tensor_storage)s);
     }
     daubechies4(&f);
+    layers(&f);
     compose(&f, false);
     compose(&f, true);
     tone_map(&f);
