@@ -4,10 +4,12 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "base/log.h"
@@ -58,14 +60,34 @@ uint64_t file_hash(const void *data, size_t size, uint64_t seed) {
     return h;
 }
 
-bool file_temp_name(const char *path, char *temp, size_t n) {
-    char directory[4096];
+// Renaming would replace devices, and files that are write-protected.
+static bool may_replace(const char *path) {
     struct stat st;
-    file_directory(path, directory, sizeof directory);
-    if (stat(path, &st) == 0 && S_ISDIR(st.st_mode)) {
-        log_error("%s: is a directory, expected the name of a file to write", path);
+    if (stat(path, &st) != 0)
+        return true;
+    if (!S_ISREG(st.st_mode)) {
+        log_error("%s: is %s, expected the name of a file to write", path,
+                  S_ISDIR(st.st_mode) ? "a directory" : "not a regular file");
         return false;
     }
+    const bool may = (st.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) && access(path, W_OK) == 0;
+    if (!may)
+        log_error("%s: cannot be written: it is write-protected", path);
+    return may;
+}
+
+double file_space(const char *path) {
+    char directory[4096];
+    struct statvfs fs;
+    file_directory(path, directory, sizeof directory);
+    return statvfs(directory, &fs) == 0 ? (double)fs.f_bavail * (double)fs.f_frsize : INFINITY;
+}
+
+bool file_temp_name(const char *path, char *temp, size_t n) {
+    char directory[4096];
+    file_directory(path, directory, sizeof directory);
+    if (!may_replace(path))
+        return false;
     if (access(directory, W_OK) != 0) {
         log_error("%s: cannot be written: directory %s: %s", path, directory, strerror(errno));
         return false;

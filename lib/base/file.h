@@ -15,10 +15,12 @@
 char *file_read(const char *path, size_t limit, size_t *size);
 
 bool file_exists(const char *path);
+// Bytes that are free where the file lies or will; infinite where that is not known.
+double file_space(const char *path);
 uint64_t file_hash(const void *data, size_t size, uint64_t seed); // FNV-1a, 64 bits
 
-// Writes "PATH.PID.tmp" into temp (size n) after checking that the directory of path is writable
-// and that path is not a directory; false after an error message.
+// Writes "PATH.PID.tmp" into temp (size n) after checking that the directory of path is writable and
+// that path is free or a regular file that may be replaced; false after an error message.
 bool file_temp_name(const char *path, char *temp, size_t n);
 // Flushes temp to disk and renames it to path; on failure removes temp and reports.
 bool file_commit(const char *temp, const char *path);

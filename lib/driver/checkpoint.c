@@ -29,11 +29,24 @@ static bool restore(struct checkpoint *c, struct film *film) {
     return agrees;
 }
 
+// The disk is full when the picture is to be written, or takes no journal: known now already.
+static bool has_space(const struct checkpoint *c, const struct film *film) {
+    enum { LEAST = 4096 };
+    const double need = LEAST + (c->options.keep && !file_exists(c->path)
+                                     ? (double)film_values(film) * (double)sizeof(double) : 0);
+    const double space = file_space(c->path);
+    if (space < need)
+        log_error("%s: cannot be written: the disk has %.3g MB free, and at least %.3g MB are needed%s",
+                  c->options.output, space * 1e-6, need * 1e-6,
+                  c->options.keep ? " for the journal" : "");
+    return space >= need;
+}
+
 bool checkpoint_open(struct checkpoint *c, const struct checkpoint_options *options,
                      const struct job *job, struct film *film) {
     *c = (struct checkpoint){.options = *options, .job = job};
     c->head = film_head_create(job, film, options->command, options->version);
-    if (!journal_path(options->output, c->path, sizeof c->path) ||
+    if (!journal_path(options->output, c->path, sizeof c->path) || !has_space(c, film) ||
         (options->resume && !restore(c, film)))
         return false;
     c->keeping = options->keep;

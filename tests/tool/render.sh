@@ -61,6 +61,15 @@ contains "$err" "$folder/none"
 expect 1 timeout 20 "$relume" render "$scene" -o "$folder" --spp 1000000000
 contains "$err" "$folder"
 
+# What is there and may not be replaced stays.
+cp "$scene" "$folder/kept.exr"
+chmod 444 "$folder/kept.exr"
+expect 1 timeout 20 "$relume" render "$scene" -o "$folder/kept.exr" --spp 1000000000
+contains "$err" "write-protected"
+cmp -s "$scene" "$folder/kept.exr" || fail "a write-protected file was replaced"
+mkfifo "$folder/pipe.exr"
+expect 1 timeout 20 "$relume" render "$scene" -o "$folder/pipe.exr" --spp 1000000000
+contains "$err" "not a regular file"
 # A good run: the figures are JSON, the file says what made it.
 expect 0 "$relume" render "$scene" -o "$picture" --spp 4 --seed 7 -D radiance=0.5 --json
 near "$out" samples 4
@@ -136,6 +145,20 @@ print(low["G"], cut, free["G"])
 good = cut > 0 and abs(low["G"] + cut - free["G"]) < 1e-5
 sys.exit(not (good and abs(cut / free["G"] - float(sys.argv[3])) < 1e-5))
 END
+
+# A disk without room, where this user may mount one.
+mkdir "$folder/small"
+if mount -t tmpfs -o size=256k none "$folder/small" 2>/dev/null; then
+    cp "$scene" "$folder/small/x.exr"
+    for options in "--size 512x256 --spp 2" "--size 512x512 --spp 1000000000 --checkpoint 1"; do
+        # shellcheck disable=SC2086 # words
+        expect 1 timeout 20 "$relume" render "$folder/clamp.xml" -o "$folder/small/x.exr" $options
+        contains "$err" "x.exr"
+        cmp -s "$scene" "$folder/small/x.exr" || fail "a full disk cost a picture"
+        [ "$(ls "$folder/small")" = x.exr ] || fail "left on a full disk: $(ls "$folder/small")"
+    done
+    umount "$folder/small"
+fi
 
 # Mistakes in a scene name file, line and the nearest name; --lenient takes unknown parameters.
 make_scene bad.xml '<shape type="sphere"><float name="radios" value="1"/></shape>'
