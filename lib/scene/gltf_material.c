@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of glTF (specification, 3.9, and the KHR_materials extensions) as materials of ours.
-//
-//   glTF                                  here
-//   ------------------------------------  ------------------------------------------------------
-//   pbrMetallicRoughness                  principled: base_color, metallic, roughness
-//   COLOR_0                               base_color times mesh_attribute vertex_color
-//   normalTexture (scale)                 normalmap
-//   occlusionTexture                      nothing: light is traced
-//   emissiveFactor, emissiveTexture       area light on the side of the normals
-//   alphaMode MASK, BLEND                 mask (MASK: opaque where alpha reaches alphaCutoff)
-//   doubleSided                           opaque materials are twosided either way: nothing is culled
-//   KHR_materials_emissive_strength       factor of the light's radiance
-//   KHR_materials_ior                     eta
-//   KHR_materials_specular                eta with the same reflectance at the normal
-//   KHR_materials_transmission            principledthin: spec_trans (a thin sheet), or with
-//   KHR_materials_volume                  principled: spec_trans, and a homogeneous medium inside
-//   KHR_materials_clearcoat               coated: weight, alpha
-//   KHR_materials_sheen                   principled: sheen
-//   KHR_materials_anisotropy              principled: anisotropic; a metal: roughconductor
-//   KHR_materials_dispersion, iridescence nothing: one warning
-//   KHR_texture_transform                 to_uv of the bitmap
-//   texCoord other than the material's    uvmap: vertex_uvN
+// Materials of glTF (specification, 3.9, and the KHR_materials extensions) as materials of ours, as
+// gltf_table.c says.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "math/ior.h"
+#include "scene/format_tables.h"
 #include "scene/gltf_making.h"
 
 // ---- parts of the principled material -------------------------------------------------------
@@ -254,12 +235,9 @@ static bool add_layers(const struct gltf_making *m, struct xml_node *outer) {
 // ---- reading --------------------------------------------------------------------------------
 
 static void warn_of_extensions(const struct gltf_making *m) {
-    static const char *const unknown[] = {
-        "KHR_materials_dispersion", "KHR_materials_iridescence", "KHR_materials_unlit",
-        "KHR_materials_pbrSpecularGlossiness", "KHR_materials_diffuse_transmission"};
-    for (size_t i = 0; i < sizeof unknown / sizeof *unknown; i++)
-        if (gltf_extension(m->material, unknown[i]))
-            gltf_warn(m->g, "%s is not used", unknown[i]);
+    for (const struct gltf_row *r = gltf_rows; r->name; r++)
+        if (!r->here && gltf_extension(m->material, r->name))
+            gltf_warn(m->g, "%s is not used", r->name);
 }
 
 static void read_factors(struct gltf_making *m) {

@@ -1,55 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 // Wavefront MTL (Alias|Wavefront, MTL Material Format 4.2, 1995; Pr, Pm, Ke and norm after the PBR
 // extension of Exocortex Clara.io).
-//
-//   MTL                      here
-//   -----------------------  ----------------------------------------------------------------
-//   Kd, map_Kd               principled: base_color
-//   Ks                       principled: specular (its luminance); black: none
-//   Ns                       principled: roughness = sqrt(alpha), alpha^2 = 2 / (Ns + 2)
-//   Pr, map_Pr, Pm, map_Pm   principled: roughness, metallic
-//   Ni with illum 4 6 7 9    dielectric: int_ior, specular_transmittance = Tf
-//   d, Tr, map_d             mask: opacity
-//   Ke, map_Ke               area light on the side of the normals
-//   norm                     normalmap
-//   map_Bump, bump           bumpmap
-//   Ka, map_Ka, ...          nothing
 #include "scene/obj_materials.h"
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/text.h"
 #include "math/ior.h"
+#include "scene/format_tables.h"
 
-enum field_kind { NUMBER, COLOUR, FILENAME };
+enum field_kind { NUMBER, COLOUR, FILENAME, ELSEWHERE }; // ELSEWHERE: not read as a field
 
 static const struct field {
     const char *word;
     enum field_kind kind;
     size_t offset;
     size_t given; // of a bool that is set, or 0
+    const char *here; // what becomes of it
 } fields[] = {
-    {"Kd", COLOUR, offsetof(struct mtl, Kd), 0},
-    {"Ks", COLOUR, offsetof(struct mtl, Ks), offsetof(struct mtl, has_Ks)},
-    {"Ke", COLOUR, offsetof(struct mtl, Ke), 0},
-    {"Tf", COLOUR, offsetof(struct mtl, Tf), 0},
-    {"Ns", NUMBER, offsetof(struct mtl, Ns), 0},
-    {"Ni", NUMBER, offsetof(struct mtl, Ni), 0},
-    {"d", NUMBER, offsetof(struct mtl, d), 0},
-    {"Pr", NUMBER, offsetof(struct mtl, Pr), offsetof(struct mtl, has_Pr)},
-    {"Pm", NUMBER, offsetof(struct mtl, Pm), offsetof(struct mtl, has_Pm)},
-    {"map_Kd", FILENAME, offsetof(struct mtl, map_Kd), 0},
-    {"map_d", FILENAME, offsetof(struct mtl, map_d), 0},
-    {"map_Ke", FILENAME, offsetof(struct mtl, map_Ke), 0},
-    {"map_Pr", FILENAME, offsetof(struct mtl, map_Pr), 0},
-    {"map_Pm", FILENAME, offsetof(struct mtl, map_Pm), 0},
-    {"norm", FILENAME, offsetof(struct mtl, norm), 0},
-    {"map_Bump", FILENAME, offsetof(struct mtl, bump), 0},
-    {"map_bump", FILENAME, offsetof(struct mtl, bump), 0},
-    {"bump", FILENAME, offsetof(struct mtl, bump), 0},
+    {"Kd", COLOUR, offsetof(struct mtl, Kd), 0, "principled: base_color"},
+    {"Ks", COLOUR, offsetof(struct mtl, Ks), offsetof(struct mtl, has_Ks),
+     "principled: specular (its luminance); black: none"},
+    {"Ke", COLOUR, offsetof(struct mtl, Ke), 0, "area light on the side of the normals"},
+    {"Tf", COLOUR, offsetof(struct mtl, Tf), 0, "dielectric: specular_transmittance"},
+    {"Ns", NUMBER, offsetof(struct mtl, Ns), 0,
+     "principled: roughness = sqrt(alpha), alpha^2 = 2 / (Ns + 2)"},
+    {"Ni", NUMBER, offsetof(struct mtl, Ni), 0, "dielectric: int_ior, where illum is 4, 6, 7 or 9"},
+    {"d", NUMBER, offsetof(struct mtl, d), 0, "mask: opacity"},
+    {"Pr", NUMBER, offsetof(struct mtl, Pr), offsetof(struct mtl, has_Pr), "principled: roughness"},
+    {"Pm", NUMBER, offsetof(struct mtl, Pm), offsetof(struct mtl, has_Pm), "principled: metallic"},
+    {"map_Kd", FILENAME, offsetof(struct mtl, map_Kd), 0, "principled: base_color"},
+    {"map_d", FILENAME, offsetof(struct mtl, map_d), 0, "mask: opacity"},
+    {"map_Ke", FILENAME, offsetof(struct mtl, map_Ke), 0, "area light on the side of the normals"},
+    {"map_Pr", FILENAME, offsetof(struct mtl, map_Pr), 0, "principled: roughness"},
+    {"map_Pm", FILENAME, offsetof(struct mtl, map_Pm), 0, "principled: metallic"},
+    {"norm", FILENAME, offsetof(struct mtl, norm), 0, "normalmap"},
+    {"map_Bump", FILENAME, offsetof(struct mtl, bump), 0, "bumpmap"},
+    {"map_bump", FILENAME, offsetof(struct mtl, bump), 0, "bumpmap"},
+    {"bump", FILENAME, offsetof(struct mtl, bump), 0, "bumpmap"},
+    {"illum", ELSEWHERE, 0, 0, "4, 6, 7, 9: dielectric"},
+    {"Tr", ELSEWHERE, 0, 0, "mask: opacity = 1 - Tr"},
+    {"Ka", ELSEWHERE, 0, 0, "nothing"},
+    {"map_Ka", ELSEWHERE, 0, 0, "nothing"},
+    {"map_Ks", ELSEWHERE, 0, 0, "nothing"},
+    {"map_Ns", ELSEWHERE, 0, 0, "nothing"},
 };
 
 static const struct mtl plain = {.Kd = {0.8, 0.8, 0.8}, .Tf = {1, 1, 1}, .Ni = 1.5, .d = 1};
@@ -98,7 +96,7 @@ static bool read_field(struct reader *r, const struct field *f, struct mtl *m, c
         ok = read_colour(p, out);
     else if (f->kind == NUMBER)
         ok = read_number(&p, out);
-    else
+    else if (f->kind == FILENAME)
         *(const char **)out = read_filename(r, p);
     if (f->given)
         *((bool *)m + f->given) = true;
@@ -151,6 +149,21 @@ bool mtl_read(struct reader *r, const char *path, struct list *materials) {
     }
     mem_free(text);
     return true;
+}
+
+void mtl_print_table(void) {
+    const size_t count = sizeof fields / sizeof *fields;
+    printf("| MTL | here |\n|---|---|\n");
+    for (size_t i = 0; i < count; i++) { // what becomes the same stands in one row
+        bool printed = false;
+        for (size_t k = 0; k < i; k++)
+            printed |= strcmp(fields[k].here, fields[i].here) == 0;
+        for (size_t k = i; k < count && !printed; k++)
+            if (strcmp(fields[k].here, fields[i].here) == 0)
+                printf("%s`%s`", k == i ? "| " : " ", fields[k].word);
+        if (!printed)
+            printf(" | %s |\n", fields[i].here);
+    }
 }
 
 // ---- elements -------------------------------------------------------------------------------

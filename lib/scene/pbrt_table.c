@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "scene/language.h"
+#include "scene/format_tables.h"
 #include "scene/pbrt.h"
 
 static const struct {
@@ -32,14 +32,8 @@ static void print_rows(const char *directive, const struct pbrt_row *rows) {
     }
 }
 
-void scene_print_format(const struct entry *format) {
-    (void)format; // there is one
+void pbrt_print_table(void) {
     printf("| pbrt | here |\n|---|---|\n");
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++)
         print_rows(tables[i].directive, tables[i].rows);
 }
-
-static const struct entry pbrt = {"pbrt", "scenes of pbrt-v4, and what becomes of them here", NULL,
-                                  NULL, 0};
-static const struct entry *const entries[] = {&pbrt, NULL};
-const struct registry scene_formats = {"format", entries};

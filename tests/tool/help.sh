@@ -136,8 +136,10 @@ contains "$out" "(degrees)"
 expect 0 "$relume" help emitter spot
 expect 0 "$relume" help rfilter box
 expect 0 "$relume" help material Au
-expect 0 "$relume" help format pbrt
-contains "$readme" "$out"
+for format in gltf mtl pbrt; do
+    expect 0 "$relume" help format $format
+    contains "$readme" "$out"
+done
 expect 0 "$relume" help material
 contains "$out" "bk7"
 
