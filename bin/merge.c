@@ -8,12 +8,14 @@
 
 #include "base/log.h"
 #include "driver/film_head.h"
+#include "image/primaries.h"
 #include "sink/journal.h"
 #include "subcommand.h"
 
 struct values {
     struct option_list inputs;
     const char *output;
+    int space;
     bool half, quiet, json;
 };
 
@@ -27,6 +29,9 @@ static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = offsetof(struct values, output),
      .argument = "OUT.exr", .help = "the picture to write, with a journal of its own",
      .required = true},
+    {.name = "colour-space", .type = OPTION_CHOICE, .offset = offsetof(struct values, space),
+     .argument = "NAME", .help = "primaries of the picture, as for render, whatever those of the parts",
+     .def = "rec709", .choices = image_space_names},
     {.name = "half", .type = OPTION_FLAG, .offset = offsetof(struct values, half),
      .help = "write 16-bit channels"},
     OPTION_QUIET(struct values, quiet),
@@ -51,6 +56,7 @@ static bool write_picture(const struct values *v, const struct film_union *u) {
     bool written = film_image(u->film, &im);
     if (written) {
         film_head_label(u->head, u->film, &im);
+        image_from_rec709(&im, (enum image_space)v->space);
         written = merge_mattes(v->inputs.items, v->inputs.count, &im) &&
                   image_write_exr(v->output, &im, &exr);
     }

@@ -107,6 +107,9 @@ same whole all
 merged all b d a c
 same whole all
 refused "samples" a b b
+expect 0 "$relume" merge "$folder"/{a,b,c,d}.exr -o "$folder/wide.exr" --quiet --colour-space acescg
+render narrow --spp $spp --colour-space acescg
+same narrow wide
 refused "no journal" a other
 expect 1 "$relume" render "$scene" -o "$folder/x.exr" --samples 100:250
 contains "$err" "128:256"
