@@ -190,11 +190,24 @@ static bool is_known(const struct registry *r, const char *name) {
     return false;
 }
 
+static bool is_exr(const char *path) {
+    static const char others[] = " png jpg jpeg tif tiff hdr pfm bmp tga webp ";
+    char extension[16];
+    file_extension(path, extension, sizeof extension);
+    const char *found = *extension ? strstr(others, extension) : NULL;
+    if (!found || found[-1] != ' ' || found[strlen(extension)] != ' ')
+        return true;
+    log_error("-o %s: renderings are written as OpenEXR, expected OUT.exr; relume tonemap makes other "
+              "pictures of it", path);
+    return false;
+}
+
 static int run(const void *values, const char *command) {
     const struct values *v = values;
     uint32_t aovs;
     uint64_t samples[2];
-    if (!samples_parse(v->samples, samples) || !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
+    if (!is_exr(v->output) || !samples_parse(v->samples, samples) ||
+        !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
         (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
         return EXIT_USAGE;
     if (v->space != SPACE_REC709 && (v->variance || v->noise > 0)) {

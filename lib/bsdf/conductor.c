@@ -24,6 +24,12 @@ static const struct param params[] = {
 
 bool conductor_index_prepare(struct conductor_index *index, const struct object *self) {
     if (index->material) {
+        if (spectrum_max(index->eta) != 0 || spectrum_min(index->k) != 1 ||
+            spectrum_max(index->k) != 1) {
+            log_error_at(self->at, "%s: eta or k was found beside material, expected either",
+                         self->type->name);
+            return false;
+        }
         if (!ior_conductor_find(index->material, &index->eta, &index->k)) {
             log_error_at(self->at, "%s: material \"%s\" is not known; expected a metal such as Au, "
                          "Ag, Al, Cu, or none", self->type->name, index->material);

@@ -3,6 +3,8 @@
 
 const char *const roughness_distributions[] = {"beckmann", "ggx", NULL};
 
+#define ALPHA_DEFAULT 0.1f // in the parameter table, too
+
 static bool is_given(const struct texture_ref *r) {
     return r->texture || r->value[0] >= 0;
 }
@@ -13,7 +15,11 @@ bool roughness_prepare(const struct roughness *r, const struct object *self) {
                      self->type->name);
         return false;
     }
-    return true;
+    if (!is_given(&r->alpha_u) || (!r->alpha.texture && r->alpha.value[0] == ALPHA_DEFAULT))
+        return true;
+    log_error_at(self->at, "%s: alpha was found beside alpha_u and alpha_v, expected either",
+                 self->type->name);
+    return false;
 }
 
 uint32_t roughness_lobes(const struct roughness *r) {

@@ -9,6 +9,18 @@
 
 static const double MOST_COST = 0.03; // share of the time that keeping may take
 
+// A picture says one seed; several are united by merge.
+static bool seeds_agree(const struct checkpoint *c, const struct sums *sums) {
+    const uint32_t seed = c->job->film.seed;
+    for (size_t i = 0; i < sums->count; i++)
+        if (sums->nodes[i].seed != seed) {
+            log_error("%s: holds samples of seed %u, and --seed is %u; expected the same, or another "
+                      "OUT.exr and `relume merge`", c->path, sums->nodes[i].seed, seed);
+            return false;
+        }
+    return true;
+}
+
 // Takes up the sums of the journal that is there.
 static bool restore(struct checkpoint *c, struct film *film) {
     struct json *head;
@@ -19,7 +31,8 @@ static bool restore(struct checkpoint *c, struct film *film) {
     }
     if (!journal_read(c->path, &head, &sums))
         return false;
-    const bool agrees = film_head_agrees(c->head, "this run", head, c->path, true);
+    const bool agrees = film_head_agrees(c->head, "this run", head, c->path, true) &&
+                        seeds_agree(c, &sums);
     if (agrees) {
         film_restore(film, &sums);
         log_info("%s: going on from %" PRIu64 " samples per pixel", c->path, film_samples(film));

@@ -169,6 +169,8 @@ static bool prepare(struct job *job, const struct job_options *o) {
     job->film.group_count = job->groups.count;
     job->film.group_names = job->groups.names;
     job->film.group_of_light = job->groups.of_light;
+    if (!film_groups_check(&job->film))
+        return false;
     for (size_t i = 0; i < o->reading.define_count; i++) {
         const struct scene_define *d = &o->reading.defines[i];
         job->defines_hash = file_hash(d->name, strlen(d->name) + 1, job->defines_hash);

@@ -32,7 +32,11 @@ bool light_groups_init(struct light_groups *g, const struct scene *s) {
         g->of_light[i] = name ? find_or_add(g, name) : UINT32_MAX;
     }
     const uint32_t rest = g->count;
-    g->names[g->count++] = "rest";
+    if (find_or_add(g, "rest") != rest) {
+        log_error("%s: --light-groups writes what has no group as \"rest\"; expected another name of "
+                  "the light or group that is called so", s->path);
+        return false;
+    }
     for (uint32_t i = 0; i < sources; i++)
         if (i >= s->light_count || g->of_light[i] == UINT32_MAX)
             g->of_light[i] = rest;

@@ -26,7 +26,7 @@ static bool has_tag(const struct xml_node *node, const char *tag) {
 static bool in_range(const struct xml_node *node, const struct param *p, double v) {
     if ((p->min == 0 && p->max == 0) || (v >= p->min && v <= p->max))
         return true;
-    log_error_at(node->at, "\"%s\" is %g%s%s, expected %g to %g", p->name, v,
+    log_error_at(node->at, "\"%s\" is %g%s%s, expected %.7g to %.7g", p->name, v,
                  p->unit && *p->unit ? " " : "", p->unit ? p->unit : "", p->min, p->max);
     return false;
 }
@@ -137,18 +137,23 @@ static enum param_type colour_use(enum param_type type) {
     }
 }
 
+// A number that has come through single precision: the limits have not.
+static bool in_range_single(const struct xml_node *node, const struct param *p, float v) {
+    return v == (float)p->min || v == (float)p->max || in_range(node, p, (double)v);
+}
+
 static bool read_colour(struct reader *r, const struct xml_node *node, const struct param *p,
                         spectrum *out) {
     if (!spectrum_read(r, node, colour_use(p->type), out))
         return false;
     if (p->type == PARAM_TEXTURE_SCALAR)
         *out = spectrum_grey((*out)[0]);
-    const double lo = spectrum_min(*out), hi = spectrum_max(*out);
+    const float lo = spectrum_min(*out), hi = spectrum_max(*out);
     if (p->min != 0 || p->max != 0)
-        return in_range(node, p, lo) && in_range(node, p, hi);
+        return in_range_single(node, p, lo) && in_range_single(node, p, hi);
     if (lo >= 0 || p->type == PARAM_TEXTURE_SCALAR || p->type == PARAM_INDEX)
         return true;
-    log_error_at(node->at, "\"%s\" is %g in one channel, expected no negative values", p->name, lo);
+    log_error_at(node->at, "\"%s\" is %g in one channel, expected no negative values", p->name, (double)lo);
     return false;
 }
 

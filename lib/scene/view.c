@@ -10,8 +10,14 @@
 
 struct film_data {
     int width, height, crop_offset_x, crop_offset_y, crop_width, crop_height;
-    const char *pixel_format;
+    int pixel_format;
 };
+
+// As versions 3 and 0.5/0.6 have them.
+static const char *const pixel_formats[] = {"rgb", "luminance", "xyz", "spectrum", "rgba",
+                                            "luminance_alpha", "xyza", "spectrum_alpha",
+                                            "luminanceAlpha", "spectrumAlpha", NULL};
+enum { FIRST_WITH_ALPHA = 4 };
 
 #define FIELD(name) offsetof(struct film_data, name)
 #define SIZE .min = 1, .max = 65536, .unit = "pixels"
@@ -27,8 +33,8 @@ static const struct param film_params[] = {
      .help = "width of what is rendered; absent: to the right edge"},
     {"crop_height", PARAM_INT, FIELD(crop_height), SIZE, .optional = true,
      .help = "height of what is rendered; absent: to the lower edge"},
-    {"pixel_format", PARAM_STRING, FIELD(pixel_format), .def = "rgb",
-     .help = "with alpha: rgba, luminance_alpha"},
+    {"pixel_format", PARAM_CHOICE, FIELD(pixel_format), .def = "rgb", .choices = pixel_formats,
+     .help = "with alpha or without; colours are R, G and B in either case"},
     // of the file that Mitsuba would write
     {"file_format", PARAM_IGNORED}, {"component_format", PARAM_IGNORED},
     {"filename", PARAM_IGNORED}, {"gamma", PARAM_IGNORED}, {"banner", PARAM_IGNORED},
@@ -75,8 +81,10 @@ static bool use_film(struct reader *r, const struct film_data *d, struct where a
                          (o->width != d->width || o->height != d->height);
     f->width = resized ? o->width : d->width;
     f->height = resized ? o->height : d->height;
-    f->alpha = strcmp(d->pixel_format, "rgba") == 0 || strcmp(d->pixel_format, "xyza") == 0 ||
-               strstr(d->pixel_format, "alpha") || strstr(d->pixel_format, "Alpha");
+    f->alpha = d->pixel_format >= FIRST_WITH_ALPHA;
+    if (d->pixel_format != 0 && d->pixel_format != FIRST_WITH_ALPHA)
+        log_warn_at(at, "pixel_format %s is written as %s", pixel_formats[d->pixel_format],
+                    pixel_formats[f->alpha ? FIRST_WITH_ALPHA : 0]);
     f->crop_x0 = d->crop_offset_x;
     f->crop_y0 = d->crop_offset_y;
     f->crop_x1 = d->crop_width ? f->crop_x0 + d->crop_width : d->width;

@@ -11,7 +11,7 @@
 static const double LUMINANCE[3] = {0.212671, 0.715160, 0.072169}; // of linear Rec.709
 static const double NOT_HIT_Z = 1e10; // depth of pixels that see nothing, as compositors expect
 
-static const char *const path_names[PATH_SLOTS] = {
+const char *const film_path_names[PATH_SLOTS] = {
     "direct_diffuse",   "direct_glossy",     "direct_specular", "indirect_diffuse",
     "indirect_glossy", "indirect_specular", "emission"};
 
@@ -140,7 +140,7 @@ static void put_pixel(struct writer *w, const struct film *f, const struct film_
     for (uint32_t g = 0; g < o->group_count; g++)
         put_rgb(w, o->group_names[g], sums + 3 * (l->group_slot + g), scale);
     for (uint32_t i = 0; l->path_slot != LAYOUT_NONE && i < PATH_SLOTS; i++)
-        put_rgb(w, path_names[i], sums + 3 * (l->path_slot + i), scale);
+        put_rgb(w, film_path_names[i], sums + 3 * (l->path_slot + i), scale);
     if (l->clamp_slot != LAYOUT_NONE)
         put_rgb(w, "clamped", sums + 3 * l->clamp_slot, scale);
     if (l->moment_channel != LAYOUT_NONE)

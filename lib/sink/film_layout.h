@@ -9,6 +9,7 @@
 
 // Slots of the path layers.
 enum { PATH_DIRECT = 0, PATH_INDIRECT = 3, PATH_EMISSION = 6, PATH_SLOTS = 7 };
+extern const char *const film_path_names[PATH_SLOTS];
 
 // Slots are colours that a sample gathers; a pixel keeps 3 channels a slot, in slot order, then
 // the channels that are made at the end of a sample.

@@ -157,6 +157,8 @@ render seed0 --samples 0:64 --seed 0
 render seed1 --samples 0:64 --seed 1
 expect 0 "$relume" merge "$folder/seed1.exr" "$folder/seed0.exr" -o "$folder/seeds.exr" --json --quiet
 near "$out" samples 128
+expect 1 "$relume" render "$scene" -o "$folder/seed0.exr" "${options[@]}" --spp 128 --seed 1 --resume
+contains "$err" "holds samples of seed 0"
 
 # Crops.
 render left --samples 0:64 --crop 0,0,21,37

@@ -200,6 +200,18 @@ for signal in INT TERM; do
         fail "relume.samples is $(attribute "$out" relume.samples)"
 done
 
+# Known before an hour of rendering: names of layers, of files; a format that is none.
+for name in rest variance; do
+    make_scene clash.xml "<emitter type='point' id='$name'/>"
+    expect 1 "$relume" render "$folder/clash.xml" -o "$folder/clash.exr" --light-groups --spp 1000000
+done
+contains "$err" '"variance" is the name of another layer'
+expect 2 "$relume" render "$scene" -o "$folder/sky.png"
+contains "$err" "relume tonemap"
+sed 's/<film type="hdrfilm">/&<string name="pixel_format" value="rbg"\/>/' "$scene" >"$folder/format.xml"
+expect 1 "$relume" render "$folder/format.xml" -o "$folder/format.exr"
+contains "$err" 'pixel_format" is "rbg", expected one of rgb'
+
 # A run that is killed leaves the old file.
 cp "$picture" "$folder/old.exr"
 stopped KILL "$relume" render "$scene" -o "$picture" --spp 1000000000

@@ -158,7 +158,7 @@ static void faults(void) {
     check_fault("<spectrum name='emission' type='blackbdy'/>",
                 "spectrum \"blackbdy\" is not known; did you mean \"blackbody\"?");
     check_fault("<spectrum name='emission' type='blackbody'><float name='temperature' value='1'/>"
-                "</spectrum>", "expected 100 to 1e+06");
+                "</spectrum>", "expected 100 to 1000000");
     check_fault("<ref name='emission' id='p'/>", "takes no texture");
     check_fault("<ref name='number' id='p'/>", "\"number\" cannot be a texture");
     check_fault("<ref name='colour' id='q'/>", "nothing has the id \"q\"");
