@@ -49,7 +49,8 @@ static void report(const struct brdf_options *o, const struct material *m) {
 static int run(const void *values, const char *command) {
     const struct brdf_options *o = values;
     struct material_request request = {.what = o->what, .id = o->id,
-                                       .define_count = o->defines.count};
+                                       .define_count = o->defines.count,
+                                       .editable = o->to && brdf_wants_curves(o->to)};
     struct arena arena = {0};
     struct material m;
     double degrees[MOST_ANGLES];
@@ -79,7 +80,8 @@ static const struct option_spec options[] = {
      .help = "which material of the scene"},
     {.name = "to", .type = OPTION_TEXT, .offset = AT(to), .argument = "OUT",
      .help = "convert: OUT.binary is a MERL table, OUT.transfer one of transfer\n"
-             "probabilities, every 5 degrees of incidence"},
+             "probabilities, every 5 degrees of incidence; OUT.csv are its curves in\n"
+             "the editable form, a file each, OUT.json all in one, for `edited`"},
     {.name = "plot", .type = OPTION_TEXT, .offset = AT(plot), .argument = "OUT.svg",
      .help = "draw the material, as SVG or PNG"},
     {.name = "kind", .type = OPTION_CHOICE, .offset = AT(kind), .argument = "KIND",
@@ -112,6 +114,7 @@ const struct subcommand subcommand_brdf = {
                 .examples = "  relume brdf gold.binary\n"
                             "  relume brdf roughconductor -D material=Au -D alpha=0.2 --json\n"
                             "  relume brdf room.xml --id floor --to floor.binary\n"
+                            "  relume brdf phong -D exponent=40 --to phong.csv\n"
                             "  relume brdf film.bsdf --plot film.svg --kind lobe --angles 45\n"},
     .run = run,
 };

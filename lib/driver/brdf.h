@@ -10,9 +10,13 @@
 // of the other lobes over pairs of directions above the surface.
 void brdf_report(const struct material *m, struct json *out);
 
-// By the extension of the path: .binary (MERL), .transfer. Delta lobes have no value and are left
-// out with a warning. false after an error message.
+// By the extension of the path: .binary (MERL), .transfer; of a material that was opened as editable
+// .json (its form, for the parameter `edited`) or .csv (a table a curve, OUT-TERM-SLOT.csv). Delta
+// lobes have no value and are left out with a warning. false after an error message.
 bool brdf_convert(const struct material *m, const char *path);
+// Whether that path wants the material's curves.
+bool brdf_wants_curves(const char *path);
+bool brdf_write_curves(const struct material *m, const char *path); // brdf_convert's part
 
 enum brdf_plot { BRDF_PLOT_CUT, BRDF_PLOT_LOBE, BRDF_PLOT_CURVE };
 extern const char *const brdf_plot_names[];

@@ -87,16 +87,24 @@ static bool to_transfer(const struct material *m, const char *path) {
     return good;
 }
 
+bool brdf_wants_curves(const char *path) {
+    char extension[16];
+    file_extension(path, extension, sizeof extension);
+    return strcmp(extension, "json") == 0 || strcmp(extension, "csv") == 0;
+}
+
 bool brdf_convert(const struct material *m, const char *path) {
     char extension[16];
     file_extension(path, extension, sizeof extension);
+    if (brdf_wants_curves(path))
+        return brdf_write_curves(m, path);
     if (bsdf_lobes(m->object) & LOBE_DELTA)
         log_warn("%s: specular lobes have no value and are left out", path);
     if (strcmp(extension, "binary") == 0)
         return to_merl(m, path);
     if (strcmp(extension, "transfer") == 0)
         return to_transfer(m, path);
-    log_error("%s: is no format of materials that is written; expected .binary (MERL) or .transfer",
-              path);
+    log_error("%s: is no format of materials that is written; expected .binary (MERL), .transfer, "
+              ".json or .csv (curves)", path);
     return false;
 }

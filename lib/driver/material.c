@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "bsdf/editable_convert.h"
 #include "driver/job.h"
 
 // The model that reads files of that extension, or NULL.
@@ -100,13 +101,13 @@ static bool prepare(struct scene *s) {
 
 static bool choose(struct material *m, const struct material_request *request, const char *id) {
     const struct scene *s = m->scene;
+    struct object *chosen = !id && s->bsdf_count == 1 ? s->bsdfs[0] : NULL;
     for (uint32_t i = 0; i < s->bsdf_count; i++)
         if (id && s->bsdfs[i]->id && strcmp(s->bsdfs[i]->id, id) == 0)
-            m->object = s->bsdfs[i];
-    if (!id && s->bsdf_count == 1)
-        m->object = s->bsdfs[0];
-    if (m->object)
-        return true;
+            chosen = s->bsdfs[i];
+    m->object = chosen;
+    if (chosen)
+        return !request->editable || editable_convert(chosen, &m->scene->arena);
     const char *ids = "";
     for (uint32_t i = 0; i < s->bsdf_count; i++)
         if (s->bsdfs[i]->id)
@@ -136,7 +137,7 @@ bool material_open(struct material *m, const struct material_request *request) {
         options.define_count = request->define_count;
     }
     m->scene = scene_read(model ? "command-line.xml" : request->what, &options);
-    if (m->scene && prepare(m->scene) && choose(m, request, model ? "material" : request->id))
+    if (m->scene && choose(m, request, model ? "material" : request->id) && prepare(m->scene))
         return true;
     material_close(m);
     return false;

@@ -42,6 +42,22 @@ expect 0 "$relume" brdf roughplastic --plot "$folder/cut.png"
 expect 0 "$relume" info "$folder/cut.png" --json
 near "$out" width 640
 
+# As curves, all in one and one by one; 64 bins are the material to 1 %.
+expect 0 "$relume" brdf roughconductor -D material=Au -D alpha=0.2 -D distribution=beckmann \
+    --to "$folder/gold.json"
+expect 0 "$relume" brdf roughconductor -D material=Au -D alpha=0.2 -D distribution=beckmann --json
+gold=$(python3 -c 'import json, sys
+print(json.loads(sys.argv[1])["directional_albedo"][0]["albedo"][0])' "$out")
+expect 0 "$relume" brdf editable -D model=cooktorrance -D edited="$folder/gold.json" --json
+roughly "$out" 0 "$gold"
+expect 0 "$relume" brdf phong -D exponent=40 --to "$folder/lobe.csv"
+head -3 "$folder/lobe-specular-f_A.csv" | grep -q '^from,to\|^at' || fail "no curve in lobe-specular-f_A.csv"
+expect 1 "$relume" brdf dielectric --to "$folder/glass.csv"
+
+expect 1 "$relume" brdf roughconductor -D alpha=0.2 -D alpha_u=0.1 -D alpha_v=0.1
+contains "$err" "alpha was found beside alpha_u and alpha_v"
+expect 1 "$relume" brdf conductor -D material=Au -D eta=1
+contains "$err" "eta or k was found beside material"
 expect 1 "$relume" brdf rougplastic
 contains "$err" "did you mean \"roughplastic\""
 expect 1 "$relume" brdf roughplastic -D alpa=0.1
