@@ -10,6 +10,7 @@
 #include "base/thread.h"
 #include "driver/edit_plan.h"
 #include "math/hash.h"
+#include "math/repeats.h"
 #include "replay/edit_script.h"
 
 enum { SIDE = 4, DEFAULT_SAMPLES = 256 };
@@ -224,7 +225,7 @@ static void summarize(struct verify *v) {
     const double n = r->blocks;
     const double variance = n > 1 ? (v->sums[1] - v->sums[0] * v->sums[0] / n) / (n - 1) : INFINITY;
     r->relmse = v->sums[0] / n;
-    r->relmse_error = 1.96 * sqrt(fmax(variance, 0) / n);
+    r->relmse_error = n > 1 ? student_95((int)n - 1) * sqrt(fmax(variance, 0) / n) : INFINITY;
     r->noise = v->sums[2] / n;
     r->bias = r->mean > 0 ? v->sums[3] / r->mean : 0;
     r->mean /= 3.0 * r->pixels;

@@ -8,6 +8,7 @@ usage: edit_cost.py BUILD [PAIRS [SIZE [SPP]]]
 import json
 import pathlib
 import re
+import resource
 import statistics
 import subprocess
 import sys
@@ -19,8 +20,10 @@ GLOSSY = ('<bsdf type="editable" id="%s"><string name="model" value="blinnphong"
 
 
 def run(*command):
-    out = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    return json.loads(out)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    out = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    out["processor"] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    return out
 
 
 def main():
@@ -39,18 +42,21 @@ def main():
         scene = folder + "/scene.xml"
         pathlib.Path(scene).write_text(text)
         same = ["--size", size, "--spp", spp, "--sampler", "sobol", "--quiet", "--json"]
-        ratios, plain, tensor = [], [], []
+        ratios, processor, plain, tensor = [], [], [], []
         for _ in range(pairs):
             a = run(relume, "render", scene, "-o", folder + "/a.exr", "--max-depth", "5", *same)
             b = run(relume, "precompute", "edit", scene, "-o", folder + "/b.safetensors", *edit,
-                    "--bounces", "4", "--series", "64,1,1,1", "--tail", "none", *same)
+                    "--bounces", "4", "--series", "64,1,1,1", "--tail", "none",
+                    "--later", "lambertian", *same)
             plain.append(a["paths"] / a["seconds"])
             tensor.append(b["paths"] / b["seconds"])
             ratios.append(b["seconds"] / a["seconds"])
+            processor.append(b["processor"] / a["processor"])
         print(f"{size}, {spp} samples, {b['objects']} objects, {b['groups']} products, "
               f"{b['file_bytes'] / 1e6:.0f} MB; medians of {pairs} pairs (lowest, highest)")
         for name, values in (("picture, paths/s", plain), ("tensor, paths/s", tensor),
-                             ("time of the tensor / of the picture", ratios)):
+                             ("time of the tensor / of the picture", ratios),
+                             ("processor time, whole runs", processor)):
             print(f"{name}: {statistics.median(values):.4g} ({min(values):.4g}, {max(values):.4g})")
 
 

@@ -127,7 +127,7 @@ static struct verify_result try_blocks(uint32_t pixels, int spp, uint32_t seed) 
     return r;
 }
 
-// Of 100 intervals of 95 %, each from 20 of 165 blocks and noisy traces, 89 to 99 hold the error that
+// Of 100 intervals of 95 %, each from 40 of 165 blocks and noisy traces, 89 to 99 hold the error that
 // all blocks have: a false alarm in 100 where the share is 95 %.
 static void intervals_cover(void) {
     enum { TRIALS = 100, RUNS = 6, WIDTH = 60, HEIGHT = 44 };
@@ -137,7 +137,7 @@ static void intervals_cover(void) {
     for (uint32_t i = 0; i < RUNS; i++)
         truth += try_blocks(WIDTH * HEIGHT, 512, 1000 + i).relmse / RUNS;
     for (uint32_t i = 0; i < TRIALS; i++) {
-        const struct verify_result r = try_blocks(320, 64, 7 + i);
+        const struct verify_result r = try_blocks(640, 64, 7 + i);
         covered += fabs(r.relmse - truth) <= r.relmse_error;
         width += r.relmse_error / TRIALS;
     }
