@@ -85,6 +85,15 @@ static void report(const struct values *v, const struct film_union *u) {
     }
 }
 
+// Errors of channels are those of the primaries in which they were summed.
+static bool may_convert(const struct values *v, const struct film_union *u) {
+    const bool may = v->space == SPACE_REC709 || film_noise(u->film) < 0;
+    if (!may)
+        log_error("--colour-space %s: the parts have errors of channels (layer variance), which are "
+                  "those of rec709", image_space_names[v->space]);
+    return may;
+}
+
 static int run(const void *values, const char *command) {
     const struct values *v = values;
     struct film_union u;
@@ -93,7 +102,7 @@ static int run(const void *values, const char *command) {
     if (!merge_films(&u, v->inputs.items, v->inputs.count))
         return EXIT_FAILED;
     json_add_text(u.head, "command", command);
-    const bool written = write_journal(v->output, &u) && write_picture(v, &u);
+    const bool written = may_convert(v, &u) && write_journal(v->output, &u) && write_picture(v, &u);
     if (written)
         report(v, &u);
     film_union_finish(&u);

@@ -107,9 +107,9 @@ same whole all
 merged all b d a c
 same whole all
 refused "samples" a b b
-expect 0 "$relume" merge "$folder"/{a,b,c,d}.exr -o "$folder/wide.exr" --quiet --colour-space acescg
-render narrow --spp $spp --colour-space acescg
-same narrow wide
+expect 1 "$relume" merge "$folder"/{a,b}.exr -o "$folder/refused.exr" --quiet --colour-space acescg
+contains "$err" "rec709"
+[ ! -e "$folder/refused.exr" ] || fail "a refused merge wrote a file"
 refused "no journal" a other
 expect 1 "$relume" render "$scene" -o "$folder/x.exr" --samples 100:250
 contains "$err" "128:256"
@@ -140,6 +140,10 @@ contains "$err" "a clamp removed"
 options=(--quiet)
 render free --samples 64:128
 refused "film" mask0 free
+render first --samples 0:64
+expect 0 "$relume" merge "$folder"/{free,first}.exr -o "$folder/wide.exr" --quiet --colour-space acescg
+render narrow --spp 128 --colour-space acescg
+same narrow wide
 options=("${plain[@]}")
 
 # The line of the README, where GNU parallel is installed.
