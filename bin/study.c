@@ -29,9 +29,9 @@ static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(directory), .argument = "DIR",
      .help = "folder for study.html, study.csv, study.json and the plots; is made", .required = true},
     {.name = "vary", .type = OPTION_TEXTS, .offset = AT(factors), .argument = "NAME=A,B,...",
-     .help = "a setting and its values: integrator, sampler, spp, time, or a\n"
-             "parameter of an integrator or sampler (max-depth=2,4,8); all\n"
-             "combinations run; one value fixes a setting", .required = true},
+     .help = "a setting and its values: integrator, sampler, spp, time, clamp,\n"
+             "adaptive, or a parameter of an integrator or sampler\n"
+             "(max-depth=2,4,8); all combinations run; one value fixes a setting", .required = true},
     {.name = "repeat", .type = OPTION_INT, .offset = AT(repeat), .argument = "N", .min = 2, .max = 4000,
      .def = "5", .help = "runs of each combination; 3 and more give confidence intervals"},
     {.name = "reference", .type = OPTION_TEXT, .offset = AT(reference), .argument = "REF.exr",

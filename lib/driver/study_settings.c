@@ -7,11 +7,13 @@
 
 // ---- settings of a run ------------------------------------------------------------------------
 
-enum { SPP, TIME, RUN_SETTINGS };
+enum { SPP, TIME, CLAMP, ADAPTIVE };
 
 static const struct param run_settings[] = {
     [SPP] = {"spp", PARAM_INT, 0, .min = 1, .max = 1 << 30, .help = "samples per pixel"},
     [TIME] = {"time", PARAM_FLOAT, 0, .min = 1e-3, .max = 1e9, .help = "seconds to render for"},
+    [CLAMP] = {"clamp", PARAM_FLOAT, 0, .min = 0, .max = 1e30, .help = "limit of indirect light; 0: none"},
+    [ADAPTIVE] = {"adaptive", PARAM_BOOL, 0, .help = "samples go where a pilot finds noise"},
     PARAM_END,
 };
 
@@ -239,11 +241,17 @@ void study_apply(const struct study_setting *s, struct job_options *job) {
     const char *seconds = value_of(s->factors, s->combination, "time");
     const char *integrator = value_of(s->factors, s->combination, integrators.kind);
     const char *sampler = value_of(s->factors, s->combination, samplers.kind);
-    float limit = 0;
+    const char *clamp = value_of(s->factors, s->combination, "clamp");
+    const char *adaptive = value_of(s->factors, s->combination, "adaptive");
+    float limit = 0, most = 0;
     if (spp)
         param_parse(&run_settings[SPP], spp, &job->spp);
     if (seconds && param_parse(&run_settings[TIME], seconds, &limit))
         job->seconds = (double)limit;
+    if (clamp && param_parse(&run_settings[CLAMP], clamp, &most))
+        job->clamp = (double)most;
+    if (adaptive)
+        param_parse(&run_settings[ADAPTIVE], adaptive, &job->adaptive);
     job->reading.integrator = integrator ? integrator : job->reading.integrator;
     job->reading.sampler = sampler ? sampler : job->reading.sampler;
     job->edit_scene = edit_scene;
