@@ -13,7 +13,7 @@
 #include "bsdf/smooth.h"
 #include "math/fresnel.h"
 
-enum { NODES = 32 };
+enum { NODES = 96 };
 
 struct coated {
     const struct object *base;
@@ -151,6 +151,8 @@ static bool sample_coat(const struct coated_data *c, struct vec2 u2, struct bsdf
     }
     s->wi = normalize(reflect(c->wo, microfacet_sample(&c->self->facets, c->wo, u2)));
     s->lobe = LOBE_GLOSSY | LOBE_REFLECTION;
+    if (!(cos_theta(s->wi) > 0)) // there the base alone may have a density
+        return false;
     const spectrum f = eval(&c->head, s->wi, &s->pdf_sa);
     if (!(s->pdf_sa > 0))
         return false;

@@ -117,7 +117,8 @@ static bool is_allowed(const struct param *p, const char *value) {
     return (p->min == 0 && p->max == 0) || (v >= p->min && v <= p->max);
 }
 
-// "alpha_u" and "alpha_v" may be refused without each other: whichever it is, both are set.
+// "alpha_u" and "alpha_v" may be refused without each other, and beside alpha: whichever it is, both
+// are set, and alpha is as if it were not given.
 static const char *set_text(struct arena *arena, const struct entry *e, const struct param *p,
                             const char *value) {
     const size_t n = strlen(p->name);
@@ -125,7 +126,9 @@ static const char *set_text(struct arena *arena, const struct entry *e, const st
     if (n > 2 && p->name[n - 2] == '_') {
         partner[n - 1] = p->name[n - 1] == 'u' ? 'v' : 'u';
         if (param_find(e, partner))
-            return arena_printf(arena, "%s=%s %s=%s", p->name, value, partner, value);
+            return arena_printf(arena, "%s%s=%s %s=%s",
+                                strcmp(p->name, "alpha_u") == 0 || strcmp(p->name, "alpha_v") == 0
+                                    ? "alpha=0.1 " : "", p->name, value, partner, value);
     }
     return arena_printf(arena, "%s=%s", p->name, value);
 }

@@ -36,7 +36,7 @@ END
 }
 room 0.001 >"$folder/room.xml"
 scene=$folder/room.xml
-options=(--bounces 3 --series 16,1,1 --quiet)
+options=(--bounces 3 --series "16,1,1" --quiet)
 
 # tensor NAME OPTION...: NAME.safetensors in the folder
 tensor() {
@@ -105,7 +105,7 @@ expect 1 "$relume" precompute edit "$scene" -o "$folder/x" "${options[@]}" --sam
 contains "$err" "128:256"
 
 # Killed at random moments until it is done.
-run=("$relume" precompute edit "$scene" -o "$folder/killed.safetensors" "${options[@]}" --spp $spp
+run=("$relume" precompute edit "$scene" -o "$folder/killed.safetensors" "${options[@]}" --spp "$spp"
     --checkpoint 0.01 --resume)
 RANDOM=4711
 for ((i = 0; i < kills; i++)); do
