@@ -127,8 +127,8 @@ static const char *set_text(struct arena *arena, const struct entry *e, const st
         partner[n - 1] = p->name[n - 1] == 'u' ? 'v' : 'u';
         if (param_find(e, partner))
             return arena_printf(arena, "%s%s=%s %s=%s",
-                                strcmp(p->name, "alpha_u") == 0 || strcmp(p->name, "alpha_v") == 0
-                                    ? "alpha=0.1 " : "", p->name, value, partner, value);
+                                is_called(p, "alpha") && param_find(e, "alpha") ? "alpha=0.1 " : "",
+                                p->name, value, partner, value);
     }
     return arena_printf(arena, "%s=%s", p->name, value);
 }
