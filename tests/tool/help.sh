@@ -6,6 +6,8 @@
 #
 # usage: help.sh RELUME
 set -u
+# LeakSanitizer itself dies now and then where PoCL has threads.
+export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 relume=$(realpath "$1")
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 materials=$(dirname "$relume")/../tests # files that the build makes
