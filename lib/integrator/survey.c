@@ -28,9 +28,12 @@ static void trace(const void *data, struct trace_context *ctx, const struct path
     accel_intersect16(ctx->world->accel, rays, 0xffff, true, hits);
     ctx->rays += SINK_LANES;
     ctx->paths += SINK_LANES;
-    for (int i = 0; i < SINK_LANES; i++)
+    for (int i = 0; i < SINK_LANES; i++) {
+        if (ctx->world->hides)
+            world_see(ctx->world, &rays[i], &hits[i]);
         if (hits[i].shape != SCENE_NONE)
             see(data, ctx, i, &rays[i], &hits[i]);
+    }
 }
 
 const struct integrator_type integrator_survey = {.entry = {.name = "survey"}, .trace = trace};
