@@ -125,4 +125,21 @@ expect 1 "$relume" tensor check bad.safetensors
 contains "$err" "not finite"
 expect 1 "$relume" edit bad.safetensors -o out.exr
 contains "$err" "not finite"
+# A shape that the camera does not see casts shadows only, in a tensor with bounces as in the picture: a
+# tensor that lists it in its pixels has no place there for the light of the floor.
+cat >hidden.xml <<'END'
+<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="4"/></integrator>
+<sensor type="perspective"><transform name="to_world"><lookat origin="0,1,5" target="0,0.5,0" up="0,1,0"/>
+</transform><film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="18"/>
+<rfilter type="box"/></film></sensor><emitter type="constant"/><bsdf type="diffuse" id="floor"/>
+<shape type="rectangle"><transform name="to_world"><scale value="3"/><rotate x="1" angle="-90"/></transform>
+<ref id="floor"/></shape><shape type="sphere"><point name="center" x="0" y="0.7" z="1"/>
+<float name="radius" value="0.6"/><boolean name="visible_to_camera" value="false"/></shape></scene>
+END
+expect 0 "$relume" precompute edit hidden.xml -o hidden.safetensors --edit floor --bounces 3 \
+    --series "8,1,1" --spp 64 --quiet
+expect 0 "$relume" edit hidden.safetensors -o hidden.exr
+expect 0 "$relume" render hidden.xml -o seen.exr --spp 64 --quiet
+expect 0 "$relume" compare seen.exr hidden.exr --fail-above relmse=2e-3
+
 finish
