@@ -100,17 +100,6 @@ bool edit_picture_by_tensor(const char *scene, const struct edit_options *option
 
 // ---- by a plain loop ----------------------------------------------------------------------------
 
-static spectrum radiance_from(const void *ctx, vec3 w) {
-    const struct world *world = ctx;
-    const struct light_hit hit = {.wi = w, .distance = INFINITY};
-    spectrum sum = spectrum_grey(0);
-    for (uint32_t i = 0; i < world->infinite_count; i++) {
-        const struct world_light *l = &world->lights[world->infinite[i]];
-        sum += l->type->emission(l->data, &hit);
-    }
-    return sum;
-}
-
 static struct direction middle_of(struct direction a, struct direction b) {
     return direction_of(a.x + b.x, a.y + b.y, a.z + b.z);
 }
@@ -231,7 +220,7 @@ void edit_picture_by_loop(const char *scene, const struct edit_options *options,
     o.reading.integrator = "direct";
     if (!job_open(&job, &o))
         exit(1);
-    struct sky sky = {radiance_from, job.world, 0};
+    struct sky sky = {world_environment, job.world, 0};
     for (uint32_t i = 0; i < job.world->infinite_count; i++) {
         const struct world_light *l = &job.world->lights[job.world->infinite[i]];
         sky.detail = l->type->detail ? (double)l->type->detail(l->data) : sky.detail;

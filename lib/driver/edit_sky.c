@@ -1,15 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/edit_sky.h"
 
-static spectrum radiance(const void *ctx, vec3 w) {
-    const struct world *world = ctx;
-    const struct light_hit hit = {.wi = w, .distance = INFINITY};
-    spectrum sum = spectrum_grey(0);
-    for (uint32_t i = 0; i < world->infinite_count; i++) {
-        const struct world_light *l = &world->lights[world->infinite[i]];
-        sum += l->type->emission(l->data, &hit);
-    }
-    return spectrum_clamp(sum, 0, 1e30f);
+static spectrum radiance(const void *world, vec3 w) {
+    return spectrum_clamp(world_environment(world, w), 0, 1e30f);
 }
 
 void edit_sky_init(struct light_triangles *t, const struct world *w, uint32_t first, uint32_t end,

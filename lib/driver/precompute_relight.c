@@ -59,17 +59,6 @@ static bool parse_basis(const char *text, struct basis *b) {
     return false;
 }
 
-static spectrum radiance_from(const void *ctx, vec3 w) {
-    const struct world *world = ctx;
-    const struct light_hit hit = {.wi = w, .distance = INFINITY};
-    spectrum sum = spectrum_grey(0);
-    for (uint32_t i = 0; i < world->infinite_count; i++) {
-        const struct world_light *l = &world->lights[world->infinite[i]];
-        sum += l->type->emission(l->data, &hit);
-    }
-    return sum;
-}
-
 static bool set_weights(struct basis *b, const struct job *job) {
     struct source_basis *s = &b->source;
     if (s->kind == SOURCE_LIGHTS) {
@@ -84,7 +73,7 @@ static bool set_weights(struct basis *b, const struct job *job) {
         for (uint32_t i = 0; i < 3 * s->count; i++)
             b->weights[i] = 1;
     else
-        lighting_project(s, &(struct sky){radiance_from, job->world, 0}, b->weights);
+        lighting_project(s, &(struct sky){world_environment, job->world, 0}, b->weights);
     return true;
 }
 

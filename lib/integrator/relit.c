@@ -63,17 +63,6 @@ static struct source_basis source_of(const struct relit *r) {
     return b;
 }
 
-static spectrum radiance(const void *ctx, vec3 w) {
-    const struct world *world = ctx;
-    const struct light_hit hit = {.wi = w, .distance = INFINITY};
-    spectrum sum = spectrum_grey(0);
-    for (uint32_t i = 0; i < world->infinite_count; i++) {
-        const struct world_light *l = &world->lights[world->infinite[i]];
-        sum += l->type->emission(l->data, &hit);
-    }
-    return sum;
-}
-
 static bool enter(struct object *self, const struct world *w, struct arena *arena) {
     struct relit *r = self->data;
     r->world = w;
@@ -82,7 +71,7 @@ static bool enter(struct object *self, const struct world *w, struct arena *aren
         return true;
     r->source = source_of(r);
     r->weights = arena_alloc(arena, 3 * (size_t)r->source.count * sizeof *r->weights);
-    lighting_project(&r->source, &(struct sky){radiance, w, 0}, r->weights);
+    lighting_project(&r->source, &(struct sky){world_environment, w, 0}, r->weights);
     const uint32_t kept = (uint32_t)r->terms;
     if (kept > 0 && kept < r->source.count && r->source.kind == SOURCE_SH)
         memset(r->weights + 3 * (size_t)kept, 0, 3 * (r->source.count - kept) * sizeof *r->weights);

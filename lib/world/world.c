@@ -267,3 +267,14 @@ spectrum world_transmittance(const struct world *w, struct ray ray, int most,
     }
     return spectrum_grey(0);
 }
+
+spectrum world_environment(const void *world, vec3 d) {
+    const struct world *w = world;
+    const struct light_hit hit = {.wi = d, .distance = INFINITY};
+    spectrum sum = spectrum_grey(0);
+    for (uint32_t i = 0; i < w->infinite_count; i++) {
+        const struct world_light *l = &w->lights[w->infinite[i]];
+        sum += l->type->emission(l->data, &hit);
+    }
+    return sum;
+}

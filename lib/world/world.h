@@ -142,6 +142,10 @@ struct ray world_shadow_ray(const struct surface *s, const struct light_sample *
 // The same from a point in space.
 struct ray world_ray_to_light(vec3 o, const struct light_sample *l);
 
+// Radiance that arrives along -d from infinitely far, of all lights that are there; world is a struct
+// world, for functions of a direction that take a context.
+spectrum world_environment(const void *world, vec3 d);
+
 // Share of light that comes through along a shadow ray: 0 where anything opaque is in the way, or
 // more than `most` surfaces that let light straight through (negative: no limit).
 spectrum world_transmittance(const struct world *w, struct ray ray, int most,
