@@ -114,11 +114,23 @@ static bool substitute(struct reader *r, const char **value, struct where at) {
     return ok;
 }
 
+// Whether this is the type, under a name that nobody defined, of an integrator in whose place the
+// user asks for another: it stays as it stands, a type that is not known.
+static bool is_type_replaced(struct reader *r, const struct xml_node *node,
+                             const struct xml_attribute *a) {
+    size_t length;
+    return r->options->integrator && strcmp(node->tag, "integrator") == 0 &&
+           strcmp(a->name, "type") == 0 && a->value[0] == '$' &&
+           !match_variable(r, a->value + 1, &length);
+}
+
 static bool substitute_all(struct reader *r, struct xml_node *node) {
-    for (int i = 0; i < node->attribute_count; i++)
-        if (strchr(node->attributes[i].value, '$') &&
-            !substitute(r, &node->attributes[i].value, node->at))
+    for (int i = 0; i < node->attribute_count; i++) {
+        struct xml_attribute *a = &node->attributes[i];
+        if (strchr(a->value, '$') && !is_type_replaced(r, node, a) &&
+            !substitute(r, &a->value, node->at))
             return false;
+    }
     return true;
 }
 

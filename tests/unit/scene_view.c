@@ -102,6 +102,13 @@ static void integrator_choice(void) {
                      "</integrator>", NULL, "path", NULL, 7, 1);
     check_integrator("<integrator type='sppm'><integer name='max_depth' value='7'/>"
                      "</integrator>", "simple", "simple", NULL, 7, 0);
+    // nor need a name that nobody defined be known where another is asked for
+    const char *named = "<integrator type='$method'><integer name='max_depth' value='7'/>"
+                        "<integer name='photon_count' value='9'/></integrator>";
+    check_integrator(named, "path", "path", NULL, 7, 0);
+    check_integrator(named, "moment", "moment", "path", 7, 1);
+    CHECK(!parse("<scene version='3.0.0'>" SENSOR "<integrator type='$method'/></scene>", NULL, NULL));
+    CHECK(captured_has("$method is not defined by -D or <default>"));
     CHECK(!parse("<scene version='3.0.0'>" SENSOR "</scene>", "pth", NULL));
     CHECK(captured_has("integrator \"pth\" is not known; did you mean \"path\"?"));
 }
