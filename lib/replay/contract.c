@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the coefficients of a block to fewer: in pieces that the device has room for.
+#include <string.h>
+
 #include "base/log.h"
 #include "base/mem.h"
 #include "replay/replay_data.h"
@@ -23,15 +25,20 @@ static struct compute_buffer send(struct replay *r, const void *data, size_t byt
 }
 
 static bool run_piece(struct replay *r, const struct device_contraction *d,
-                      const struct replay_chunk *chunk, uint32_t coefficients, size_t first,
+                      const struct replay_block *b, const struct replay_chunk *chunk, size_t first,
                       size_t tiles, float *out) {
-    const size_t parts = (d->c->reduced + TILE_REDUCED - 1) / TILE_REDUCED;
-    const struct compute_arg args[] = {
-        COMPUTE_BUFFER(&chunk->values), COMPUTE_BUFFER(&d->weight), COMPUTE_BUFFER(&d->index),
-        COMPUTE_BUFFER(&d->start), COMPUTE_UINT(coefficients), COMPUTE_UINT(d->c->reduced),
+    // Rows of all kinds are too different to be done eight at a time.
+    const bool rows = b->tensor->storage == TENSOR_ROWS;
+    const size_t parts = rows ? d->c->reduced : (d->c->reduced + TILE_REDUCED - 1) / TILE_REDUCED;
+    struct compute_arg args[REPLAY_CHUNK_ARGS + 7];
+    const struct compute_arg own[] = {
+        COMPUTE_BUFFER(&d->weight), COMPUTE_BUFFER(&d->index), COMPUTE_BUFFER(&d->start),
+        COMPUTE_UINT(b->tensor->coefficients), COMPUTE_UINT(d->c->reduced),
         COMPUTE_UINT((uint32_t)first), COMPUTE_BUFFER(&d->out)};
+    const uint32_t n = replay_chunk_args(b, chunk, args);
     const size_t floats = (size_t)d->c->reduced * REPLAY_ROW;
-    return compute_run(r->device, d->kernel, tiles * parts, args, 8) &&
+    memcpy(args + n, own, sizeof own);
+    return compute_run(r->device, d->kernel, tiles * parts, args, n + 7) &&
            compute_read(r->device, &d->out, 0, out + (chunk->first + first) * floats,
                         tiles * floats * sizeof *out);
 }
@@ -44,7 +51,7 @@ static bool run_chunks(struct replay *r, struct replay_block *b, const struct de
         good = replay_open_chunk(r, b, c);
         for (size_t first = 0; first < c->tiles && good; first += d->most) {
             const size_t tiles = c->tiles - first < d->most ? c->tiles - first : d->most;
-            good = run_piece(r, d, c, b->tensor->coefficients, first, tiles, out);
+            good = run_piece(r, d, b, c, first, tiles, out);
         }
         replay_close_chunk(c);
     }
@@ -80,6 +87,6 @@ bool replay_contract(struct replay *r, uint32_t block, const struct contraction 
         return true;
     if (r->device)
         return on_device(r, b, c, out);
-    tiles_contract(t->values, t->storage, c, t->coefficients, tensor_tiles(t), out, r->threads);
+    tiles_contract(tensor_values_of(t), c, t->coefficients, tensor_tiles(t), out, r->threads);
     return true;
 }

@@ -18,14 +18,12 @@ static void root_mean_square(void *ctx, size_t coefficient, int worker) {
     const struct tensor_block *b = m->block;
     double sum = 0;
     (void)worker;
+    float row[ROW];
+    const struct tensor_data values = tensor_values_of(b);
     for (size_t tile = 0; tile < tensor_tiles(b); tile++) {
-        const size_t row = (tile * b->coefficients + coefficient) * ROW;
-        for (size_t i = row; i < row + ROW; i++) {
-            const double v = b->storage == TENSOR_BF16
-                                 ? (double)bf16_to_float(((const uint16_t *)b->values)[i])
-                                 : (double)((const float *)b->values)[i];
-            sum += v * v;
-        }
+        tensor_row(&values, b->coefficients, tile, (uint32_t)coefficient, row);
+        for (size_t i = 0; i < ROW; i++)
+            sum += (double)row[i] * (double)row[i];
     }
     m->out[coefficient] = sqrt(sum / (double)(TILE_CHANNELS * b->pixel_count));
 }

@@ -9,17 +9,22 @@
 #include "base/thread.h"
 #include "replay/tiles.h"
 
-static size_t tile_bytes(const struct tensor_block *b) {
-    return (size_t)b->coefficients * REPLAY_ROW * tensor_value_size(b->storage);
+// Where tile `tile` of a block's values begins.
+static size_t tile_start(const struct tensor_block *b, size_t tile) {
+    return b->storage == TENSOR_ROWS
+               ? b->value_rows.starts[tile]
+               : tile * b->coefficients * REPLAY_ROW * tensor_value_size(b->storage);
 }
 
 // ---- chunks -------------------------------------------------------------------------------------
 
 bool replay_open_chunk(struct replay *r, const struct replay_block *b, struct replay_chunk *c) {
-    const size_t bytes = tile_bytes(b->tensor);
+    static const char nothing[TENSOR_ALIGN] __attribute__((aligned(TENSOR_ALIGN)));
+    const size_t first = tile_start(b->tensor, c->first);
+    const size_t bytes = tile_start(b->tensor, c->first + c->tiles) - first;
     if (!c->values.handle)
-        c->values = compute_buffer_wrap(
-            r->device, (const char *)b->tensor->values + c->first * bytes, c->tiles * bytes);
+        c->values = bytes ? compute_buffer_wrap(r->device, (const char *)b->tensor->values + first, bytes)
+                          : compute_buffer_wrap(r->device, nothing, sizeof nothing);
     return c->values.handle != NULL;
 }
 
@@ -31,38 +36,73 @@ void replay_close_chunk(struct replay_chunk *c) {
 struct compute_kernel *replay_kernel(struct replay *r, const struct replay_block *b,
                                      const char *file, const char *name) {
     char full[32];
-    snprintf(full, sizeof full, "%s_%s", name, b->tensor->storage == TENSOR_BF16 ? "bf16" : "f32");
-    return compute_kernel(r->device, file, full);
+    static const char *const suffix[] = {"f32", "bf16", "rows"}; // by enum tensor_storage
+    const bool rows = b->tensor->storage == TENSOR_ROWS;
+    snprintf(full, sizeof full, "%s_%s", name, suffix[b->tensor->storage]);
+    return compute_kernel(r->device, rows ? "rows" : file, full);
+}
+
+uint32_t replay_chunk_args(const struct replay_block *b, const struct replay_chunk *c,
+                           struct compute_arg args[REPLAY_CHUNK_ARGS]) {
+    args[0] = COMPUTE_BUFFER(&c->values);
+    if (b->tensor->storage != TENSOR_ROWS)
+        return 1;
+    args[1] = COMPUTE_BUFFER(&b->entries);
+    args[2] = COMPUTE_BUFFER(&b->starts);
+    args[3] = COMPUTE_UINT((uint32_t)c->first);
+    return 4;
 }
 
 // ---- set up -------------------------------------------------------------------------------------
 
+// As many tiles from `first` on as `limit` bytes hold.
+static size_t tiles_within(const struct tensor_block *b, size_t first, size_t limit) {
+    const size_t tiles = tensor_tiles(b), start = tile_start(b, first);
+    size_t low = first, high = tiles; // all of low fit
+    while (low < high) {
+        const size_t middle = high - (high - low) / 2;
+        if (tile_start(b, middle) - start <= limit)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low - first;
+}
+
 // Chunks stay on the device as long as there is room; the others go through an eighth of it.
 static bool make_chunks(struct replay *r, struct replay_block *b) {
-    const size_t tiles = tensor_tiles(b->tensor), bytes = tile_bytes(b->tensor);
-    size_t limit = compute_most_allocation(r->device);
-    if (r->room < tiles * bytes && r->room / 8 < limit)
-        limit = r->room / 8;
-    size_t most = limit / bytes;
-    if (most == 0 && bytes <= compute_most_allocation(r->device))
-        most = 1;
-    if (most == 0) {
-        log_error("%s cannot hold a tile of %zu bytes; go on without it (--no-device)",
-                  compute_name(r->device), bytes);
-        return false;
-    }
-    b->chunk_count = (tiles + most - 1) / most;
-    b->chunks = mem_array(b->chunk_count, sizeof *b->chunks);
-    for (size_t i = 0; i < b->chunk_count; i++) {
-        struct replay_chunk *c = &b->chunks[i];
-        c->first = i * most;
-        c->tiles = tiles - c->first < most ? tiles - c->first : most;
-        c->resident = c->tiles * bytes <= r->room - r->room / 4;
+    const size_t tiles = tensor_tiles(b->tensor), most = compute_most_allocation(r->device);
+    const size_t limit = r->room < tile_start(b->tensor, tiles) && r->room / 8 < most ? r->room / 8 : most;
+    size_t capacity = 0;
+    for (size_t first = 0; first < tiles; first += b->chunks[b->chunk_count - 1].tiles) {
+        size_t count = tiles_within(b->tensor, first, limit);
+        count = count > 0 ? count : tiles_within(b->tensor, first, most) > 0;
+        const size_t bytes = tile_start(b->tensor, first + count) - tile_start(b->tensor, first);
+        if (count == 0) {
+            log_error("%s cannot hold a tile of %zu bytes; go on without it (--no-device)",
+                      compute_name(r->device), tile_start(b->tensor, first + 1) - tile_start(b->tensor, first));
+            return false;
+        }
+        mem_grow(&b->chunks, &capacity, b->chunk_count + 1, sizeof *b->chunks);
+        struct replay_chunk *c = &b->chunks[b->chunk_count++];
+        *c = (struct replay_chunk){.first = first, .tiles = count,
+                                   .resident = bytes <= r->room - r->room / 4};
         if (c->resident && !replay_open_chunk(r, b, c))
             return false;
-        r->room -= c->resident ? c->tiles * bytes : 0;
+        r->room -= c->resident ? bytes : 0;
     }
     return true;
+}
+
+// The entries and starts of rows.
+static bool send_rows(struct replay *r, struct replay_block *b) {
+    const struct tensor_block *t = b->tensor;
+    const struct tensor_rows *rows = &t->value_rows;
+    if (t->storage != TENSOR_ROWS)
+        return true;
+    b->entries = compute_buffer_wrap(r->device, rows->entries, tensor_tiles(t) * t->coefficients * 4);
+    b->starts = compute_buffer_wrap(r->device, rows->starts, (tensor_tiles(t) + 1) * 8);
+    return b->entries.handle && b->starts.handle;
 }
 
 static bool prepare_block(struct replay *r, struct replay_block *b) {
@@ -77,7 +117,8 @@ static bool prepare_block(struct replay *r, struct replay_block *b) {
         return false;
     b->weights = compute_buffer_create(r->device, weights);
     b->terms = compute_buffer_create(r->device, (size_t)b->tensor->coefficients * 4);
-    return b->out.handle && b->weights.handle && b->terms.handle && make_chunks(r, b);
+    return b->out.handle && b->weights.handle && b->terms.handle && send_rows(r, b) &&
+           make_chunks(r, b);
 }
 
 // A device that shares the host's memory works on the file where it is mapped.
@@ -122,6 +163,8 @@ void replay_destroy(struct replay *r) {
         compute_buffer_destroy(&b->weights);
         compute_buffer_destroy(&b->terms);
         compute_buffer_destroy(&b->total);
+        compute_buffer_destroy(&b->entries);
+        compute_buffer_destroy(&b->starts);
         if (b->layers != b->sums)
             mem_free(b->layers);
         mem_free(b->chunks);
@@ -139,23 +182,23 @@ const char *replay_device(const struct replay *r) {
 
 // ---- products -----------------------------------------------------------------------------------
 
-// Runs a kernel over all chunks of a block; its arguments 0, out_at and out_at + 1 are set here.
+// Runs a kernel over all chunks of a block: its arguments are the chunk's, `args`, where the sums go
+// and the number of the first.
 static bool run_chunks(struct replay *r, struct replay_block *b, const char *kernel,
-                       const struct compute_arg *args, uint32_t count, uint32_t out_at,
-                       uint32_t layer) {
-    struct compute_arg a[8];
+                       const struct compute_arg *args, uint32_t count, uint32_t layer) {
+    struct compute_arg a[REPLAY_CHUNK_ARGS + 6];
     struct compute_kernel *k = replay_kernel(r, b, "dot", kernel);
     if (!k)
         return false;
-    memcpy(a, args, count * sizeof *a);
     for (size_t i = 0; i < b->chunk_count; i++) {
         struct replay_chunk *c = &b->chunks[i];
         if (!replay_open_chunk(r, b, c))
             return false;
-        a[0] = COMPUTE_BUFFER(&c->values);
-        a[out_at] = COMPUTE_BUFFER(&b->out);
-        a[out_at + 1] = COMPUTE_UINT((uint32_t)(c->first + layer * tensor_tiles(b->tensor)));
-        if (!compute_run(r->device, k, c->tiles, a, count))
+        const uint32_t n = replay_chunk_args(b, c, a);
+        memcpy(a + n, args, count * sizeof *a);
+        a[n + count] = COMPUTE_BUFFER(&b->out);
+        a[n + count + 1] = COMPUTE_UINT((uint32_t)(c->first + layer * tensor_tiles(b->tensor)));
+        if (!compute_run(r->device, k, c->tiles, a, n + count + 2))
             return false;
         replay_close_chunk(c);
     }
@@ -169,15 +212,13 @@ bool replay_product(struct replay *r, uint32_t block, const float *weights) {
     if (tensor_tiles(t) == 0)
         return true;
     if (!r->device) {
-        tiles_dot(t->values, t->storage, weights, t->coefficients, tensor_tiles(t), b->layers,
+        tiles_dot(tensor_values_of(t), weights, t->coefficients, tensor_tiles(t), b->layers,
                   r->threads);
         return true;
     }
-    const struct compute_arg args[] = {COMPUTE_BUFFER(NULL), COMPUTE_BUFFER(&b->weights),
-                                       COMPUTE_UINT(t->coefficients), COMPUTE_BUFFER(NULL),
-                                       COMPUTE_UINT(0)};
+    const struct compute_arg args[] = {COMPUTE_BUFFER(&b->weights), COMPUTE_UINT(t->coefficients)};
     return compute_write(r->device, &b->weights, 0, weights, (size_t)t->coefficients * 3 * 4) &&
-           run_chunks(r, b, "dot", args, 5, 3, 0);
+           run_chunks(r, b, "dot", args, 2, 0);
 }
 
 bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, const float *weights,
@@ -192,17 +233,16 @@ bool replay_update_layer(struct replay *r, uint32_t block, uint32_t layer, const
     if (tensor_tiles(t) == 0 || count == 0)
         return true;
     if (!r->device) {
-        tiles_add_terms(t->values, t->storage, weights, terms, count, t->coefficients,
+        tiles_add_terms(tensor_values_of(t), weights, terms, count, t->coefficients,
                         tensor_tiles(t), b->layers + layer * tensor_tiles(t) * REPLAY_ROW,
                         r->threads);
         return true;
     }
-    const struct compute_arg args[] = {
-        COMPUTE_BUFFER(NULL), COMPUTE_BUFFER(&b->weights), COMPUTE_BUFFER(&b->terms),
-        COMPUTE_UINT(count), COMPUTE_UINT(t->coefficients), COMPUTE_BUFFER(NULL), COMPUTE_UINT(0)};
+    const struct compute_arg args[] = {COMPUTE_BUFFER(&b->weights), COMPUTE_BUFFER(&b->terms),
+                                       COMPUTE_UINT(count), COMPUTE_UINT(t->coefficients)};
     return compute_write(r->device, &b->weights, 0, weights, (size_t)count * 3 * 4) &&
            compute_write(r->device, &b->terms, 0, terms, (size_t)count * 4) &&
-           run_chunks(r, b, "add_terms", args, 7, 5, layer);
+           run_chunks(r, b, "add_terms", args, 4, layer);
 }
 
 bool replay_clear_layer(struct replay *r, uint32_t block, uint32_t layer) {
@@ -279,7 +319,7 @@ void replay_variance(struct replay *r, const float *const *weights,
         if (!b->halves)
             continue;
         float *out = mem_array(tensor_tiles(b) * REPLAY_ROW, sizeof *out);
-        tiles_dot(b->halves, b->storage, weights[i], b->coefficients, tensor_tiles(b), out,
+        tiles_dot(tensor_halves_of(b), weights[i], b->coefficients, tensor_tiles(b), out,
                   r->threads);
         compose(r, i, out, factors, sum);
         mem_free(out);

@@ -6,7 +6,10 @@
 #include "kernels/tile.h"
 #include "replay/replay.h"
 
-enum { REPLAY_ROW = TILE_CHANNELS * TILE_LANES }; // floats of a coefficient of a tile
+enum {
+    REPLAY_ROW = TILE_CHANNELS * TILE_LANES, // floats of a coefficient of a tile
+    REPLAY_CHUNK_ARGS = 4,                   // at most
+};
 
 // Consecutive tiles of a block that one buffer of the device holds.
 struct replay_chunk {
@@ -24,6 +27,7 @@ struct replay_block {
     bool dirty; // sums are on the device, not here
     struct compute_buffer out, weights, terms; // out: the layers
     struct compute_buffer total;               // of the layers, where there are more than one
+    struct compute_buffer entries, starts;     // of TENSOR_ROWS
 };
 
 struct replay {
@@ -41,6 +45,10 @@ struct replay {
 bool replay_open_chunk(struct replay *r, const struct replay_block *b, struct replay_chunk *c);
 void replay_close_chunk(struct replay_chunk *c);
 
-// Kernel `name` for the storage of a block. NULL after an error message.
+// The arguments that say where a chunk's coefficients are; their number.
+uint32_t replay_chunk_args(const struct replay_block *b, const struct replay_chunk *c,
+                           struct compute_arg args[REPLAY_CHUNK_ARGS]);
+
+// Kernel `name` for the storage of a block: of `file`, or of rows.cl. NULL after an error message.
 struct compute_kernel *replay_kernel(struct replay *r, const struct replay_block *b,
                                      const char *file, const char *name);

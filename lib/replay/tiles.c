@@ -10,8 +10,7 @@
 enum { ROW = TILE_CHANNELS * TILE_LANES }; // floats of a coefficient of a tile
 
 struct run {
-    const void *t;
-    enum tensor_storage storage;
+    struct tensor_data t;
     const float *weight;
     const uint32_t *term;
     uint32_t terms, coefficients;
@@ -19,20 +18,45 @@ struct run {
     float *out, *scratch;
 };
 
-// sum += weight * row, one channel after the other.
-static void add_row(const struct run *r, size_t row, const float *weight, float *restrict sum) {
-    const float *restrict f = (const float *)r->t + row * ROW;
-    const uint16_t *restrict h = (const uint16_t *)r->t + row * ROW;
+static void add_floats(const float *restrict row, const float *weight, float *restrict sum) {
     for (int channel = 0; channel < TILE_CHANNELS; channel++) {
         const float w = weight[channel];
         const int first = channel * TILE_LANES, end = first + TILE_LANES;
-        if (r->storage == TENSOR_F32)
-            for (int i = first; i < end; i++)
-                sum[i] += w * f[i];
-        else
-            for (int i = first; i < end; i++)
-                sum[i] += w * bf16_to_float(h[i]);
+        for (int i = first; i < end; i++)
+            sum[i] += w * row[i];
     }
+}
+
+static void add_bf16(const uint16_t *restrict row, const float *weight, float *restrict sum) {
+    for (int channel = 0; channel < TILE_CHANNELS; channel++) {
+        const float w = weight[channel];
+        const int first = channel * TILE_LANES, end = first + TILE_LANES;
+        for (int i = first; i < end; i++)
+            sum[i] += w * bf16_to_float(row[i]);
+    }
+}
+
+// A row of any kind; what is zero adds nothing.
+static void add_stored(const struct run *r, size_t tile, uint32_t coefficient, const float *weight,
+                       float *sum) {
+    float row[ROW];
+    const uint32_t entry = r->t.rows.entries[tile * r->coefficients + coefficient];
+    if (row_way_of(entry) == WAY_row_zero)
+        return;
+    tensor_row(&r->t, r->coefficients, tile, coefficient, row);
+    add_floats(row, weight, sum);
+}
+
+// sum += weight * row, one channel after the other.
+static void add_row(const struct run *r, size_t tile, uint32_t coefficient, const float *weight,
+                    float *sum) {
+    const size_t at = (tile * r->coefficients + coefficient) * ROW;
+    if (r->t.storage == TENSOR_F32)
+        add_floats((const float *)r->t.data + at, weight, sum);
+    else if (r->t.storage == TENSOR_BF16)
+        add_bf16((const uint16_t *)r->t.data + at, weight, sum);
+    else
+        add_stored(r, tile, coefficient, weight, sum);
 }
 
 static void dot_tile(void *ctx, size_t tile, int worker) {
@@ -40,13 +64,13 @@ static void dot_tile(void *ctx, size_t tile, int worker) {
     float sum[ROW] = {0};
     (void)worker;
     for (uint32_t c = 0; c < r->coefficients; c++)
-        add_row(r, tile * r->coefficients + c, r->weight + (size_t)c * TILE_CHANNELS, sum);
+        add_row(r, tile, c, r->weight + (size_t)c * TILE_CHANNELS, sum);
     memcpy(r->out + tile * ROW, sum, sizeof sum);
 }
 
-void tiles_dot(const void *t, enum tensor_storage storage, const float *weight,
-               uint32_t coefficients, size_t tiles, float *out, int threads) {
-    struct run r = {.t = t, .storage = storage, .weight = weight, .coefficients = coefficients,
+void tiles_dot(struct tensor_data t, const float *weight, uint32_t coefficients, size_t tiles,
+               float *out, int threads) {
+    struct run r = {.t = t, .weight = weight, .coefficients = coefficients,
                     .out = out};
     thread_for(threads, tiles, dot_tile, &r);
 }
@@ -55,14 +79,14 @@ static void add_terms_tile(void *ctx, size_t tile, int worker) {
     const struct run *r = ctx;
     (void)worker;
     for (uint32_t k = 0; k < r->terms; k++)
-        add_row(r, tile * r->coefficients + r->term[k], r->weight + (size_t)k * TILE_CHANNELS,
+        add_row(r, tile, r->term[k], r->weight + (size_t)k * TILE_CHANNELS,
                 r->out + tile * ROW);
 }
 
-void tiles_add_terms(const void *t, enum tensor_storage storage, const float *weight,
+void tiles_add_terms(struct tensor_data t, const float *weight,
                      const uint32_t *term, uint32_t terms, uint32_t coefficients, size_t tiles,
                      float *out, int threads) {
-    struct run r = {.t = t, .storage = storage, .weight = weight, .term = term, .terms = terms,
+    struct run r = {.t = t, .weight = weight, .term = term, .terms = terms,
                     .coefficients = coefficients, .out = out};
     thread_for(threads, tiles, add_terms_tile, &r);
 }
@@ -97,13 +121,13 @@ static void contract_tile(void *ctx, size_t tile, int worker) {
     memset(out, 0, (size_t)c->reduced * ROW * sizeof *out);
     for (uint32_t k = 0; k < c->reduced; k++)
         for (size_t i = c->start[k]; i < c->start[k + 1]; i++)
-            add_row(r, tile * r->coefficients + c->index[i], c->weight + i * TILE_CHANNELS,
+            add_row(r, tile, c->index[i], c->weight + i * TILE_CHANNELS,
                     out + (size_t)k * ROW);
 }
 
-void tiles_contract(const void *t, enum tensor_storage storage, const struct contraction *c,
-                    uint32_t coefficients, size_t tiles, float *out, int threads) {
-    struct run r = {.t = t, .storage = storage, .contraction = c, .coefficients = coefficients,
+void tiles_contract(struct tensor_data t, const struct contraction *c, uint32_t coefficients,
+                    size_t tiles, float *out, int threads) {
+    struct run r = {.t = t, .contraction = c, .coefficients = coefficients,
                     .out = out};
     thread_for(threads, tiles, contract_tile, &r);
 }

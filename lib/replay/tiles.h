@@ -9,10 +9,10 @@
 #include "transport/tensor.h"
 
 // out[tile][channel][lane] = sum_c weight[c][channel] T[tile][c][channel][lane]
-void tiles_dot(const void *t, enum tensor_storage storage, const float *weight,
-               uint32_t coefficients, size_t tiles, float *out, int threads);
+void tiles_dot(struct tensor_data t, const float *weight, uint32_t coefficients, size_t tiles,
+               float *out, int threads);
 // out[tile][channel][lane] += sum_k weight[k][channel] T[tile][term[k]][channel][lane]
-void tiles_add_terms(const void *t, enum tensor_storage storage, const float *weight,
+void tiles_add_terms(struct tensor_data t, const float *weight,
                      const uint32_t *term, uint32_t terms, uint32_t coefficients, size_t tiles,
                      float *out, int threads);
 
@@ -29,8 +29,8 @@ struct contraction {
 };
 
 // out[tile][r][channel][lane] = sum_i weight[i][channel] T[tile][index[i]][channel][lane]
-void tiles_contract(const void *t, enum tensor_storage storage, const struct contraction *c,
-                    uint32_t coefficients, size_t tiles, float *out, int threads);
+void tiles_contract(struct tensor_data t, const struct contraction *c, uint32_t coefficients,
+                    size_t tiles, float *out, int threads);
 // Periodic Daubechies-4 transform over the coefficients of each lane, in place; coefficients a power
 // of two; scratch as large as t.
 void tiles_daubechies4(float *t, float *scratch, uint32_t coefficients, uint32_t steps,

@@ -13,6 +13,9 @@
 //     N.pixels   U32 [n]             index y * width + x of each pixel, all different
 //     N.values   F32 or BF16 [tiles, coefficients, channels, 64]   mean of the two half-sums
 //     N.halves   same                half their difference; absent where the tensor has no noise
+//     N.value_rows, N.half_rows   U32 [tiles, coefficients]; N.value_starts, N.half_starts
+//                U64 [tiles + 1]   of storage ROWS, whose values and halves are U8 [bytes]: where and
+//                    how each row is stored (transport/rows.h)
 //     N.sums     F64 [tiles, coefficients, 2 channels, 64]   sums of the even samples' channels, then
 //                    of the odd ones', from which more samples go on; or absent
 //     N.view     F32 [tiles, 64]     angle between normal and eye for f_o, radians; or absent
@@ -37,10 +40,13 @@
 #include <stdint.h>
 
 #include "base/json.h"
+#include "transport/bfloat16.h"
+#include "transport/rows.h"
 
 enum { TENSOR_LANES = 64, TENSOR_ALIGN = 128, TENSOR_MOST_AXES = 2 };
 
-enum tensor_storage { TENSOR_F32, TENSOR_BF16 };
+// How coefficients are stored: all alike, or each row in its own way (transport/rows.h).
+enum tensor_storage { TENSOR_F32, TENSOR_BF16, TENSOR_ROWS };
 
 enum tensor_basis { TENSOR_BOX, TENSOR_HAT };
 
@@ -69,6 +75,7 @@ struct tensor_block {
     enum tensor_storage storage;
     const void *values;
     const void *halves; // NULL: no noise
+    struct tensor_rows value_rows, half_rows; // of TENSOR_ROWS
     const float *view;  // NULL: none
     const double *sums, *views; // NULL: none
     const float *weights; // NULL: none
@@ -87,15 +94,54 @@ static inline uint64_t tensor_tiles(const struct tensor_block *b) {
     return (b->pixel_count + TENSOR_LANES - 1) / TENSOR_LANES;
 }
 
+// Not of TENSOR_ROWS.
 static inline size_t tensor_value_size(enum tensor_storage s) {
     return s == TENSOR_BF16 ? 2 : 4;
 }
 
+// Coefficients of all tiles and channels, lanes beyond the list's end among them.
+static inline uint64_t tensor_value_count(const struct tensor_block *b) {
+    return tensor_tiles(b) * b->coefficients * b->channels * TENSOR_LANES;
+}
+
+static inline uint64_t tensor_rows_bytes(const struct tensor_block *b, const struct tensor_rows *r) {
+    return r->starts[tensor_tiles(b)] + tensor_tiles(b) * b->coefficients * sizeof *r->entries;
+}
+
 // Bytes of `values`.
 static inline uint64_t tensor_bytes(const struct tensor_block *b) {
-    return tensor_tiles(b) * b->coefficients * b->channels * TENSOR_LANES *
-           tensor_value_size(b->storage);
+    return b->storage == TENSOR_ROWS ? tensor_rows_bytes(b, &b->value_rows)
+                                     : tensor_value_count(b) * tensor_value_size(b->storage);
 }
+
+// Bytes of `values` and `halves`.
+static inline uint64_t tensor_block_bytes(const struct tensor_block *b) {
+    return tensor_bytes(b) + (!b->halves ? 0
+                              : b->storage == TENSOR_ROWS ? tensor_rows_bytes(b, &b->half_rows)
+                                                          : tensor_bytes(b));
+}
+
+// Coefficients as they lie in memory: the values of a block, or its halves.
+struct tensor_data {
+    const void *data;
+    enum tensor_storage storage;
+    struct tensor_rows rows;
+};
+
+static inline struct tensor_data tensor_values_of(const struct tensor_block *b) {
+    return (struct tensor_data){b->values, b->storage, b->value_rows};
+}
+
+static inline struct tensor_data tensor_halves_of(const struct tensor_block *b) {
+    return (struct tensor_data){b->halves, b->storage, b->half_rows};
+}
+
+// Reads [channel][lane] of a coefficient of a tile, however it is stored.
+void tensor_row(const struct tensor_data *d, uint32_t coefficients, size_t tile, uint32_t coefficient,
+                float values[ROW_VALUES]);
+// The block without rows: of storage F32 if it had some, in memory that is made anew (and freed, what
+// was there), to be freed by the caller.
+struct tensor_block tensor_unpack(const struct tensor_block *b, float *memory[2]);
 
 // Whether samples can be added to it exactly.
 static inline bool tensor_has_sums(const struct tensor *t) {
@@ -107,22 +153,6 @@ static inline size_t tensor_sum_at(const struct tensor_block *b, uint64_t lane, 
                                    uint32_t half, uint32_t channel) {
     return (((lane / TENSOR_LANES * b->coefficients + coefficient) * 2 + half) * b->channels +
             channel) * TENSOR_LANES + lane % TENSOR_LANES;
-}
-
-// bfloat16, rounded to nearest even; infinities stay, NaN stays NaN.
-static inline uint16_t bf16_from_float(float f) {
-    uint32_t u;
-    __builtin_memcpy(&u, &f, sizeof u);
-    if ((u & 0x7fffffff) > 0x7f800000)
-        return (uint16_t)(u >> 16 | 0x40);
-    return (uint16_t)((u + 0x7fff + (u >> 16 & 1)) >> 16);
-}
-
-static inline float bf16_to_float(uint16_t h) {
-    const uint32_t u = (uint32_t)h << 16;
-    float f;
-    __builtin_memcpy(&f, &u, sizeof f);
-    return f;
 }
 
 // ---- reading ------------------------------------------------------------------------------------

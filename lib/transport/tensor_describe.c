@@ -3,6 +3,16 @@
 
 #include "transport/tensor_remake.h"
 
+// How many rows are stored in each way.
+static void describe_rows(const struct tensor_block *b, struct json *j) {
+    int64_t counts[1 << ROW_WAY_BITS] = {0};
+    for (uint64_t i = 0; i < tensor_tiles(b) * b->coefficients; i++)
+        counts[row_way_of(b->value_rows.entries[i])]++;
+    for (int way = 0; way < ROW_WAYS; way++)
+        if (counts[way])
+            json_add_count(j, row_ways[way]->name, counts[way]);
+}
+
 static void describe_block(const struct tensor_block *b, struct json *j) {
     json_add_text(j, "object", b->object);
     json_add_text(j, "term", b->term);
@@ -11,7 +21,10 @@ static void describe_block(const struct tensor_block *b, struct json *j) {
     for (uint32_t i = 0; i < b->axis_count; i++)
         json_add_count(j, b->axes[i].name, b->axes[i].bins);
     json_add_count(j, "coefficients", b->coefficients);
-    json_add_text(j, "storage", b->storage == TENSOR_BF16 ? "bf16" : "f32");
+    json_add_text(j, "storage", b->storage == TENSOR_ROWS ? "rows"
+                               : b->storage == TENSOR_BF16 ? "bf16" : "f32");
+    if (b->storage == TENSOR_ROWS)
+        describe_rows(b, json_add_object(j, "rows"));
     json_add_bool(j, "halves", b->halves != NULL);
     if (b->sums)
         json_add_bool(j, "sums", true);

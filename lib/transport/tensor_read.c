@@ -74,7 +74,7 @@ static size_t item_size(const char *dtype) {
     static const struct {
         const char *name;
         size_t size;
-    } types[] = {{"F32", 4}, {"BF16", 2}, {"U32", 4}, {"F64", 8}};
+    } types[] = {{"F32", 4}, {"BF16", 2}, {"U32", 4}, {"F64", 8}, {"U64", 8}, {"U8", 1}};
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (strcmp(types[i].name, dtype) == 0)
             return types[i].size;
@@ -214,6 +214,64 @@ static bool read_pixels(struct tensor_file *f, uint32_t block, struct tensor_blo
                           "twice", pixels.name, wrong_one);
 }
 
+// An array whose only length is not known before.
+static const void *find_bytes(struct tensor_file *f, const char *name, bool required, uint64_t *bytes,
+                              bool *wrong) {
+    const struct json *shape = json_get(json_get(f->header, name), "shape");
+    *bytes = 0;
+    read_count(json_at(shape, 0), bytes);
+    return find_array(f, &(struct array){name, "U8", 1, {*bytes}}, required, wrong);
+}
+
+static bool read_rows(struct tensor_file *f, uint32_t block, const struct tensor_block *b, bool halves,
+                      const void **values, struct tensor_rows *r) {
+    const uint64_t tiles = tensor_tiles(b);
+    const struct array entries = {array_name(f, block, halves ? "half_rows" : "value_rows"), "U32", 2,
+                                  {tiles, b->coefficients}};
+    const struct array starts = {array_name(f, block, halves ? "half_starts" : "value_starts"), "U64",
+                                 1, {tiles + 1}};
+    uint64_t bytes;
+    bool wrong;
+    *values = find_bytes(f, array_name(f, block, halves ? "halves" : "values"), !halves, &bytes, &wrong);
+    if (wrong || !*values)
+        return !wrong;
+    r->entries = find_array(f, &entries, true, &wrong);
+    if (wrong)
+        return false;
+    r->starts = find_array(f, &starts, true, &wrong);
+    if (wrong)
+        return false;
+    const char *fault = rows_fault(r, tiles, b->coefficients, bytes);
+    return !fault || fail(f, "array %s: its rows %s", entries.name, fault);
+}
+
+// Values and halves, which may be absent.
+static bool read_values(struct tensor_file *f, const char *dtype, uint32_t block,
+                        struct tensor_block *b) {
+    bool wrong;
+    if (b->storage == TENSOR_ROWS)
+        return read_rows(f, block, b, false, &b->values, &b->value_rows) &&
+               read_rows(f, block, b, true, &b->halves, &b->half_rows);
+    struct array values = {array_name(f, block, "values"), dtype, 4,
+                           {tensor_tiles(b), b->coefficients, b->channels, TENSOR_LANES}};
+    b->values = find_array(f, &values, true, &wrong);
+    if (wrong)
+        return false;
+    values.name = array_name(f, block, "halves");
+    b->halves = find_array(f, &values, false, &wrong);
+    return !wrong;
+}
+
+static bool read_storage(const char *name, enum tensor_storage *out) {
+    static const char *const names[] = {"F32", "BF16", "ROWS"}; // by enum tensor_storage
+    for (int i = 0; name && i < 3; i++)
+        if (strcmp(name, names[i]) == 0) {
+            *out = (enum tensor_storage)i;
+            return true;
+        }
+    return false;
+}
+
 static bool read_block(struct tensor_file *f, const struct json *j, uint32_t block,
                        struct tensor_block *b) {
     const char *storage = json_text(json_get(j, "storage"));
@@ -221,30 +279,18 @@ static bool read_block(struct tensor_file *f, const struct json *j, uint32_t blo
     bool wrong;
     b->object = json_text(json_get(j, "object"));
     b->term = json_text(json_get(j, "term"));
-    if (!b->object || !b->term || !storage ||
-        (strcmp(storage, "F32") != 0 && strcmp(storage, "BF16") != 0) ||
+    if (!b->object || !b->term || !read_storage(storage, &b->storage) ||
         !read_count(json_get(j, "channels"), &channels) || channels != 3 ||
         !read_count(json_get(j, "pixels"), &b->pixel_count) || b->pixel_count > UINT32_MAX)
         return fail(f, "block %u: object, term, storage, channels or pixels are not described", block);
     b->channels = (uint32_t)channels;
-    b->storage = strcmp(storage, "BF16") == 0 ? TENSOR_BF16 : TENSOR_F32;
-    if (!read_axes(f, j, block, b) || !read_pixels(f, block, b))
+    if (!read_axes(f, j, block, b) || !read_pixels(f, block, b) || !read_values(f, storage, block, b))
         return false;
     const uint64_t tiles = tensor_tiles(b);
-    const struct array values = {array_name(f, block, "values"), storage, 4,
-                                 {tiles, b->coefficients, channels, TENSOR_LANES}};
-    struct array halves = values;
     const struct array sums = {array_name(f, block, "sums"), "F64", 4,
                                {tiles, b->coefficients, 2 * channels, TENSOR_LANES}};
     const struct array views = {array_name(f, block, "views"), "F64", 3, {2, tiles, TENSOR_LANES}};
     const struct array view = {array_name(f, block, "view"), "F32", 2, {tiles, TENSOR_LANES}};
-    halves.name = array_name(f, block, "halves");
-    b->values = find_array(f, &values, true, &wrong);
-    if (wrong)
-        return false;
-    b->halves = find_array(f, &halves, false, &wrong);
-    if (wrong)
-        return false;
     b->sums = find_array(f, &sums, false, &wrong);
     if (wrong)
         return false;
@@ -355,14 +401,21 @@ const struct tensor *tensor_get(const struct tensor_file *f) {
     return &f->tensor;
 }
 
-static bool all_finite(const void *values, enum tensor_storage storage, uint64_t n) {
-    const float *f = values;
-    const uint16_t *h = values;
+static bool all_finite(const float *values, uint64_t n) {
     bool finite = true;
-    for (uint64_t i = 0; i < n && storage == TENSOR_F32; i++)
-        finite &= isfinite(f[i]) != 0;
-    for (uint64_t i = 0; i < n && storage == TENSOR_BF16; i++)
-        finite &= (h[i] & 0x7f80) != 0x7f80;
+    for (uint64_t i = 0; i < n; i++)
+        finite &= isfinite(values[i]) != 0;
+    return finite;
+}
+
+static bool data_finite(const struct tensor_block *b, const struct tensor_data *d) {
+    bool finite = true;
+    float row[ROW_VALUES];
+    for (uint64_t t = 0; t < tensor_tiles(b) && d->data; t++)
+        for (uint32_t c = 0; c < b->coefficients; c++) {
+            tensor_row(d, b->coefficients, t, c, row);
+            finite &= all_finite(row, ROW_VALUES);
+        }
     return finite;
 }
 
@@ -377,16 +430,16 @@ bool tensor_check_values(const struct tensor_file *f) {
     const struct tensor *t = &f->tensor;
     for (uint32_t i = 0; i < t->block_count; i++) {
         const struct tensor_block *b = &t->blocks[i];
-        const uint64_t n = tensor_bytes(b) / tensor_value_size(b->storage);
-        if (!all_finite(b->values, b->storage, n) ||
-            (b->halves && !all_finite(b->halves, b->storage, n)) ||
+        const uint64_t n = tensor_value_count(b);
+        const struct tensor_data values = tensor_values_of(b), halves = tensor_halves_of(b);
+        if (!data_finite(b, &values) || !data_finite(b, &halves) ||
             !sums_finite(b->sums, 2 * n) || !sums_finite(b->views, 2 * tensor_tiles(b) * TENSOR_LANES) ||
             (b->weights &&
-             !all_finite(b->weights, TENSOR_F32, (uint64_t)b->coefficients * b->channels)) ||
-            (b->view && !all_finite(b->view, TENSOR_F32, tensor_tiles(b) * TENSOR_LANES)))
+             !all_finite(b->weights, (uint64_t)b->coefficients * b->channels)) ||
+            (b->view && !all_finite(b->view, tensor_tiles(b) * TENSOR_LANES)))
             return fail(f, "block %u (%s.%s) holds values that are not finite", i, b->object, b->term);
     }
-    if ((t->fixed && !all_finite(t->fixed, TENSOR_F32, 3ull * t->width * t->height)) ||
+    if ((t->fixed && !all_finite(t->fixed, 3ull * t->width * t->height)) ||
         !sums_finite(t->fixed_sums, 3ull * t->width * t->height))
         return fail(f, "the fixed picture holds values that are not finite");
     return true;

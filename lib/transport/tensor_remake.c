@@ -17,6 +17,8 @@ struct source {
     const struct tensor *tensor;
     double share;   // of all samples; 1 where lights are summed
     uint32_t *lane; // by pixel of the old picture, of the block that is worked on
+    struct tensor_block block; // that one, of no rows
+    float *unpacked[2];        // its values and halves, if it has rows
 };
 
 struct remake {
@@ -176,11 +178,12 @@ static bool is_zero(const struct tensor_block *b, uint32_t lane) {
     return true;
 }
 
-// Where each pixel stands in the lists of a block.
+// Begins a block: where each pixel stands in its lists.
 static void find_lanes(struct remake *r, uint32_t block) {
     for (size_t s = 0; s < r->options->count; s++) {
         struct source *source = &r->sources[s];
-        const struct tensor_block *b = &source->tensor->blocks[block];
+        const struct tensor_block *b = &source->block;
+        source->block = tensor_unpack(&source->tensor->blocks[block], source->unpacked);
         const size_t plane = (size_t)source->tensor->width * source->tensor->height;
         if (!source->lane)
             source->lane = mem_array(plane, sizeof *source->lane);
@@ -190,13 +193,13 @@ static void find_lanes(struct remake *r, uint32_t block) {
     }
 }
 
-static bool is_kept(const struct remake *r, uint32_t block, uint32_t pixel) {
+static bool is_kept(const struct remake *r, uint32_t pixel) {
     bool listed = false, zero = true;
     for (size_t s = 0; s < r->options->count; s++) {
         const uint32_t lane = r->sources[s].lane[pixel];
         listed = listed || lane != ABSENT;
         if (lane != ABSENT && zero && r->options->drop_zeros)
-            zero = is_zero(&r->sources[s].tensor->blocks[block], lane);
+            zero = is_zero(&r->sources[s].block, lane);
     }
     if (listed && zero && r->options->drop_zeros)
         r->result->dropped++;
@@ -204,13 +207,13 @@ static bool is_kept(const struct remake *r, uint32_t block, uint32_t pixel) {
 }
 
 // The new list, as pixels of the old picture.
-static uint32_t *list_pixels(struct remake *r, uint32_t block, uint64_t *count) {
+static uint32_t *list_pixels(struct remake *r, uint64_t *count) {
     const struct tensor *t = r->sources[0].tensor;
     const size_t plane = (size_t)t->width * t->height;
     uint32_t *list = mem_array(plane, sizeof *list);
     *count = 0;
     for (uint32_t p = 0; p < plane; p++)
-        if (is_inside(r, p) && is_kept(r, block, p))
+        if (is_inside(r, p) && is_kept(r, p))
             list[(*count)++] = p;
     return list;
 }
@@ -259,9 +262,9 @@ static void shape_block(struct remake *r, uint32_t block) {
     struct tensor_block *b = &r->blocks[block];
     uint64_t count;
     find_lanes(r, block);
-    uint32_t *list = list_pixels(r, block, &count);
+    uint32_t *list = list_pixels(r, &count);
     uint32_t *pixels = arena_alloc(&r->arena, (count + 1) * sizeof *pixels);
-    *b = r->sources[0].tensor->blocks[block];
+    *b = r->sources[0].block;
     b->pixel_count = count;
     b->storage = r->options->new_storage ? r->options->storage : b->storage;
     b->halves = NULL;
@@ -344,7 +347,7 @@ static void fill(struct remake *r, uint32_t block, bool halves, void *out) {
         for (size_t row = 0; row < rows; row++) {
             double sum = 0;
             for (size_t s = 0; s < r->options->count; s++) {
-                const struct tensor_block *from = &r->sources[s].tensor->blocks[block];
+                const struct tensor_block *from = &r->sources[s].block;
                 const uint32_t lane = r->sources[s].lane[old];
                 const void *values = halves ? from->halves : from->values;
                 if (lane != ABSENT && values)
@@ -451,6 +454,8 @@ bool tensor_remake(const struct tensor_remake *o, const char *output, struct ten
     for (size_t s = 0; s < o->count; s++) {
         tensor_close(r.sources[s].file);
         mem_free(r.sources[s].lane);
+        mem_free(r.sources[s].unpacked[0]);
+        mem_free(r.sources[s].unpacked[1]);
     }
     mem_free(r.sources);
     mem_free(r.tensors);

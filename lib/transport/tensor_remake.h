@@ -16,7 +16,7 @@ struct tensor_remake {
     size_t count;
     uint32_t crop[4];   // x0, y0, x1, y1 (just past the last): the new picture; all 0: all of it
     bool drop_zeros;    // pixels whose coefficients are all zero leave the lists
-    bool new_storage;   // else that of the first source
+    bool new_storage;   // else that of the first source, or F32 in place of rows
     enum tensor_storage storage;
     const char *command; // for the metadata
 };

@@ -62,7 +62,7 @@ static uint64_t add_array(struct json *header, const char *name, const char *dty
 }
 
 static const char *storage_name(enum tensor_storage s) {
-    return s == TENSOR_BF16 ? "BF16" : "F32";
+    return s == TENSOR_BF16 ? "BF16" : s == TENSOR_ROWS ? "ROWS" : "F32";
 }
 
 static void describe_block(struct json *blocks, const struct tensor_block *b) {
@@ -121,15 +121,30 @@ static uint64_t add_small(struct plan *p, uint32_t block, const char *what, cons
     return at;
 }
 
+static uint64_t plan_rows(struct plan *p, uint32_t i, const struct tensor_block *b, bool halves) {
+    const struct tensor_rows *r = halves ? &b->half_rows : &b->value_rows;
+    const uint64_t shape[2] = {tensor_tiles(b), b->coefficients}, ends = shape[0] + 1;
+    add_small(p, i, halves ? "half_rows" : "value_rows", "U32", 4, shape, 2, r->entries,
+              shape[0] * shape[1] * 4);
+    add_small(p, i, halves ? "half_starts" : "value_starts", "U64", 8, &ends, 1, r->starts, ends * 8);
+    return add_small(p, i, halves ? "halves" : "values", "U8", 1, &r->starts[shape[0]], 1, NULL, 0);
+}
+
+// Values and halves, whose offset is returned.
+static uint64_t plan_values(struct plan *p, uint32_t i, const struct tensor_block *b, bool halves) {
+    const uint64_t shape[4] = {tensor_tiles(b), b->coefficients, b->channels, TENSOR_LANES};
+    return b->storage == TENSOR_ROWS
+               ? plan_rows(p, i, b, halves)
+               : add_small(p, i, halves ? "halves" : "values", storage_name(b->storage),
+                           tensor_value_size(b->storage), shape, 4, NULL, 0);
+}
+
 static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
     const struct tensor_block *b = &w->shape->blocks[i];
     const uint64_t tiles = tensor_tiles(b);
-    const uint64_t shape[4] = {tiles, b->coefficients, b->channels, TENSOR_LANES};
     const uint64_t sums[4] = {tiles, b->coefficients, 2ull * b->channels, TENSOR_LANES};
     const uint64_t view[2] = {tiles, TENSOR_LANES}, views[3] = {2, tiles, TENSOR_LANES};
     const uint64_t weights[2] = {b->coefficients, b->channels};
-    const char *dtype = storage_name(b->storage);
-    const size_t item = tensor_value_size(b->storage);
     add_small(p, i, "pixels", "U32", 4, &b->pixel_count, 1, b->pixels, b->pixel_count * 4);
     for (uint32_t a = 0; a < b->axis_count; a++) {
         const uint64_t edges = tensor_edges(&b->axes[a]);
@@ -142,9 +157,9 @@ static void plan_block(struct tensor_writer *w, struct plan *p, uint32_t i) {
         add_small(p, i, "views", "F64", 8, views, 3, b->views, tiles * TENSOR_LANES * 16);
     if (b->weights)
         add_small(p, i, "weights", "F32", 4, weights, 2, b->weights, weights[0] * weights[1] * 4);
-    w->values[i] = add_small(p, i, "values", dtype, item, shape, 4, NULL, 0);
+    w->values[i] = plan_values(p, i, b, false);
     if (b->halves)
-        w->halves[i] = add_small(p, i, "halves", dtype, item, shape, 4, NULL, 0);
+        w->halves[i] = plan_values(p, i, b, true);
     if (b->sums)
         w->sums[i] = add_small(p, i, "sums", "F64", 8, sums, 4, NULL, 0);
 }

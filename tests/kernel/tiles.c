@@ -112,12 +112,16 @@ static struct compute_buffer to_device(struct fixture *f, const void *data, size
     return b;
 }
 
+static struct tensor_data stored(const struct fixture *f, enum tensor_storage s) {
+    return (struct tensor_data){.data = f->stored[s], .storage = s};
+}
+
 static void dot(struct fixture *f, enum tensor_storage s) {
     const size_t n = (size_t)TILES * ROW;
     const uint32_t c = COEFFICIENTS * COLUMNS;
     float *twin = mem_array(n, sizeof *twin), *zero = mem_array(n, sizeof *zero);
     double *truth = mem_array(n, sizeof *truth), *size = mem_array(n, sizeof *size);
-    tiles_dot(f->stored[s], s, f->weight, c, TILES, twin, 2);
+    tiles_dot(stored(f, s), f->weight, c, TILES, twin, 2);
     for (size_t tile = 0; tile < TILES; tile++)
         for (uint32_t i = 0; i < c; i++)
             add_truth(f->t[s], tile * c + i, f->weight + 3 * i, truth + tile * ROW, size + tile * ROW);
@@ -141,7 +145,7 @@ static void add_terms(struct fixture *f, enum tensor_storage s) {
     float *start = random_floats(n), *twin = mem_array(n, sizeof *twin);
     double *truth = mem_array(n, sizeof *truth), *size = mem_array(n, sizeof *size);
     memcpy(twin, start, n * sizeof *twin);
-    tiles_add_terms(f->stored[s], s, f->weight, f->term, TERMS, COEFFICIENTS, tiles, twin, 2);
+    tiles_add_terms(stored(f, s), f->weight, f->term, TERMS, COEFFICIENTS, tiles, twin, 2);
     for (size_t i = 0; i < n; i++)
         truth[i] = (double)start[i], size[i] = fabs(truth[i]);
     for (size_t tile = 0; tile < tiles; tile++)
@@ -209,7 +213,7 @@ static void contract(struct fixture *f, enum tensor_storage s) {
     for (uint32_t i = 0; i < start[REDUCED]; i++)
         index[i] = (uint32_t)rand() % coefficients;
     const struct contraction c = {REDUCED, start, index, weight};
-    tiles_contract(f->stored[s], s, &c, coefficients, TILES, twin, 2);
+    tiles_contract(stored(f, s), &c, coefficients, TILES, twin, 2);
     for (size_t tile = 0; tile < TILES; tile++)
         for (size_t r = 0; r < REDUCED; r++)
             for (size_t i = start[r]; i < start[r + 1]; i++)

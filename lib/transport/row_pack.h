@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of whole numbers: per channel the lowest value and the step, as two bfloat16 (16 bytes in
+// all), then numbers of `bits` bits. A byte holds 8 / bits of them, low bits first, that are as far
+// apart as there are bytes, so that neighbours are unpacked alike.
+#pragma once
+
+#include "transport/bfloat16.h"
+#include "transport/rows.h"
+
+enum { ROW_CHANNELS = 3, ROW_HEAD = 16 };
+
+void row_pack(const float *values, uint32_t per_channel, uint32_t bits, void *out);
+
+static inline void row_unpack(const void *in, uint32_t per_channel, uint32_t bits, float *values) {
+    const uint32_t stride = ROW_CHANNELS * per_channel * bits / 8, mask = (1u << bits) - 1;
+    const uint16_t *head = in;
+    const uint8_t *packed = (const uint8_t *)in + ROW_HEAD;
+    for (uint32_t c = 0, i = 0; c < ROW_CHANNELS; c++) {
+        const float lo = bf16_to_float(head[2 * c]), step = bf16_to_float(head[2 * c + 1]);
+        for (uint32_t end = i + per_channel; i < end; i++)
+            values[i] = lo + step * (float)(packed[i % stride] >> i / stride * bits & mask);
+    }
+}
