@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/progress.h"
+#include "budget.h"
 #include "driver/edit_groups.h"
 #include "driver/precompute_relight.h"
 #include "driver/stop.h"
@@ -82,6 +83,8 @@ static const struct option_spec options[] = {
     OPTION_SEED(struct precompute_values, seed),
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
      .help = "store 16 bits (bfloat16) a coefficient"},
+    {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
+     .help = "edit: " BUDGET_HELP},
     {.name = "memory", .type = OPTION_NUMBER, .offset = AT(memory), .argument = "GB", .min = 0,
      .max = 1e6, .def = "0", .help = "most memory for sums; 0: half of what there is"},
     {.name = "dry-run", .type = OPTION_FLAG, .offset = AT(dry_run),
@@ -168,14 +171,26 @@ static int run(const void *values, const char *command) {
                   "without --direct");
         return EXIT_USAGE;
     }
+    double relmse = 0;
+    if (v->budget && (!edit || v->half || precompute_is_progressive(v))) {
+        log_error("--budget goes with edit, without --half and without sums that are kept (--samples, "
+                  "--time, --checkpoint, --resume); store those by `relume tensor requantise --budget`");
+        return EXIT_USAGE;
+    }
+    if (v->budget && !budget_parse(v->budget, &relmse))
+        return EXIT_USAGE;
     if (v->quiet)
         log_set_level(LOG_WARN);
     struct arena arena = {0};
     const struct scene_define *defines = defines_parse(&v->defines, &arena);
-    const int code = !defines ? EXIT_USAGE
-                     : edit   ? precompute_edit_run(v, command, defines)
-                              : run_relight(v, command, defines);
+    int code = !defines ? EXIT_USAGE
+               : edit   ? precompute_edit_run(v, command, defines)
+                        : run_relight(v, command, defines);
     arena_finish(&arena);
+    if (code == EXIT_DONE && v->budget && !v->dry_run && !budget_run(&(struct budget_run){
+            .tensor = v->output, .output = v->output, .command = command, .relmse = relmse,
+            .threads = v->threads, .quiet = v->quiet, .json = v->json}))
+        code = EXIT_FAILED;
     return code;
 }
 

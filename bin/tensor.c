@@ -3,14 +3,16 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "budget.h"
 #include "subcommand.h"
 #include "transport/tensor_remake.h"
 
 struct values {
-    const char *verb, *output;
+    const char *verb, *output, *budget;
     struct option_list files;
     int crop[4];
-    bool half, drop_zeros, quiet, json;
+    int threads;
+    bool half, drop_zeros, no_halves, quiet, json;
 };
 
 #define AT(member) offsetof(struct values, member)
@@ -18,7 +20,7 @@ struct values {
 static const struct option_argument arguments[] = {
     {"VERB", AT(verb), "info: what it holds; check: whether all of it is sound;\n"
      "merge: the mean of tensors with different seeds; crop: a part of the\n"
-     "picture; requantise: other storage (--half: 16 bits; else 32)", false, false},
+     "picture; requantise: other storage (--half: 16 bits; --budget; else 32)", false, false},
     {"T", AT(files), "tensors", false, true},
     {.name = NULL},
 };
@@ -30,8 +32,13 @@ static const struct option_spec options[] = {
      .min = 0, .max = 65536, .help = "these pixels only; X1 and Y1 are just past the last"},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
      .help = "store 16 bits (bfloat16) a coefficient"},
+    {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
+     .help = "requantise: " BUDGET_HELP},
+    {.name = "no-halves", .type = OPTION_FLAG, .offset = AT(no_halves),
+     .help = "--budget: leave out the half-sums, which tell of noise"},
     {.name = "drop-zeros", .type = OPTION_FLAG, .offset = AT(drop_zeros),
      .help = "pixels whose coefficients are all zero leave the lists"},
+    OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),
     OPTION_JSON(struct values, json),
     OPTION_END,
@@ -103,6 +110,15 @@ static bool remake(const struct values *v, const char *command) {
     return true;
 }
 
+static int store(const struct values *v, const char *command) {
+    struct budget_run b = {.tensor = v->files.items[0], .output = v->output, .command = command,
+                           .threads = v->threads, .no_halves = v->no_halves, .quiet = v->quiet,
+                           .json = v->json};
+    if (!budget_parse(v->budget, &b.relmse))
+        return EXIT_USAGE;
+    return budget_run(&b) ? EXIT_DONE : EXIT_FAILED;
+}
+
 static int run(const void *values, const char *command) {
     static const char *const verbs[] = {"info", "check", "merge", "crop", "requantise", NULL};
     const struct values *v = values;
@@ -120,8 +136,15 @@ static int run(const void *values, const char *command) {
                                                                     : "and one tensor");
         return EXIT_USAGE;
     }
+    if ((v->budget || v->no_halves) &&
+        (!v->budget || verb != 4 || v->half || v->drop_zeros || v->crop[2])) {
+        log_error("tensor %s: --budget goes with requantise, alone; --no-halves with --budget", v->verb);
+        return EXIT_USAGE;
+    }
     if (v->quiet)
         log_set_level(LOG_WARN);
+    if (v->budget)
+        return store(v, command);
     const bool done = verb == 0 ? inform(v) : verb == 1 ? check(v) : remake(v, command);
     return done ? EXIT_DONE : EXIT_FAILED;
 }
@@ -136,6 +159,8 @@ const struct subcommand subcommand_tensor = {
                 .examples = "  relume tensor info tea.safetensors\n"
                             "  relume tensor check tea.safetensors\n"
                             "  relume tensor requantise tea.safetensors -o small.safetensors --half\n"
+                            "  relume tensor requantise tea.safetensors -o small.safetensors --budget "
+                            "relmse=1e-4\n"
                             "  relume tensor crop tea.safetensors -o part.safetensors --crop 2,2,9,8\n"
                             "  relume tensor merge tea.safetensors more.safetensors -o all.safetensors "
                             "--drop-zeros\n"},
