@@ -42,6 +42,9 @@ static const struct option_spec options[] = {
     {.name = "series", .type = OPTION_TEXT, .offset = AT(series), .argument = "J,J2,1,...",
      .def = "64", .help = "edit: most bins of a curve where the eye sees it, at the second hop, ...;\n"
      "1, where none is given: an albedo"},
+    {.name = "group", .type = OPTION_TEXTS, .offset = AT(group), .argument = "NAME=OBJ,OBJ,...",
+     .help = "edit: these objects have one mean albedo at later hops, since tensors grow with\n"
+             "products of albedos; N: all but the N - 1 that pass most light on are a group"},
     {.name = "tail", .type = OPTION_TEXT, .offset = AT(tail), .argument = "NAME", .def = "frozen",
      .help = "edit: light of more bounces meets the materials as they are (frozen),\n"
      "is left out (none), or comes from the ratio of the last two bounces (geometric)"},

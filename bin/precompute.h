@@ -13,7 +13,7 @@ struct precompute_values {
     int lights, light_samples, packets;
     double memory, seconds, checkpoint;
     bool resume, half, dry_run, lenient, quiet, json, direct, unshadowed;
-    struct option_list defines, edit;
+    struct option_list defines, edit, group;
 };
 
 extern const char *const precompute_packets[]; // "auto", "pixels", "lights", NULL

@@ -91,6 +91,7 @@ int precompute_polynomial_run(const struct precompute_values *v, const char *com
     const bool progressive = precompute_is_progressive(v);
     struct polynomial_options o = {
         .job = precompute_job(v, defines), .edit = v->edit.items, .edit_count = v->edit.count,
+        .group = v->group.items, .group_count = v->group.count,
         .bounces = (uint32_t)v->bounces, .output = v->output,
         .storage = v->half ? TENSOR_BF16 : TENSOR_F32, .most_memory = v->memory * 1e9,
         .keep = progressive, .resume = v->resume, .checkpoint = v->checkpoint,

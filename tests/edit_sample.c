@@ -103,11 +103,25 @@ static void add_block(struct builder *b, const char *object, uint32_t index, uin
     t->halves = random_values(b, t);
 }
 
+// A weighted sum of the albedos of the first two objects.
+static void add_members(struct json *members) {
+    for (int i = 0; i < 2; i++) {
+        struct json *m = json_append_object(members);
+        json_add_count(m, "object", i);
+        struct json *weight = json_add_array(m, "weight");
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            json_append_number(weight, 0.25 + 0.5 * i + 0.1 * k);
+    }
+}
+
 static void add_groups(struct builder *b) {
     static const int groups[GROUPS][3] = {{0}, {1, 0}, {1, 1}, {2, 0, 0}, {2, 1, 0}, {2, 2, 1}};
     struct json *factors = json_add_array(b->meta, "factors");
     for (int i = 0; i < OBJECTS; i++)
-        json_add_count(json_append_object(factors), "object", i);
+        if (i == 1)
+            add_members(json_add_array(json_append_object(factors), "members"));
+        else
+            json_add_count(json_append_object(factors), "object", i);
     struct json *coarse = json_append_object(factors);
     json_add_count(coarse, "object", 1);
     json_add_count(coarse, "term", 0);

@@ -9,11 +9,11 @@
 #include "base/log.h"
 #include "integrator/symbolic.h"
 
-uint64_t edit_groups_count(uint32_t objects, uint32_t bounces, uint64_t coarse) {
+uint64_t edit_groups_count(uint32_t classes, uint32_t bounces, uint64_t coarse) {
     const uint32_t most = coarse ? (bounces > 1 ? bounces - 2 : 0) : bounces - 1;
-    double tails = 1; // C(most + objects, objects)
+    double tails = 1; // C(most + classes, classes)
     for (uint32_t i = 1; i <= most; i++)
-        tails = tails * (objects + i) / i;
+        tails = tails * (classes + i) / i;
     const double all = coarse && bounces > 1 ? 1 + (double)coarse * tails : tails;
     return all < 0x1p62 ? (uint64_t)(all + 0.5) : UINT64_MAX;
 }
@@ -57,7 +57,7 @@ static uint32_t add_group(struct edit_groups *g, uint32_t parent, uint32_t last)
 // The steps from groups [first, end) that lead to a new one, and then those that do not. Albedos
 // alone count as factors that are in order; `root` groups have none.
 static void extend(struct edit_groups *g, uint32_t first, uint32_t end) {
-    const uint32_t m = g->objects;
+    const uint32_t m = g->classes;
     for (uint32_t i = first; i < end; i++)
         for (uint32_t o = g->last[i] < m ? g->last[i] : 0; o < m; o++)
             g->next[(size_t)i * m + o] = add_group(g, i, o);
@@ -96,31 +96,32 @@ static bool check_series(const uint32_t *series, uint32_t bounces) {
     return true;
 }
 
-static bool check_count(uint64_t count, uint32_t objects, uint32_t bounces) {
+static bool check_count(uint64_t count, uint32_t classes, uint32_t bounces) {
     if (count <= EDIT_MOST_GROUPS)
         return true;
-    log_error("%u objects and %u bounces make %.3g products of factors, more than %d; expected fewer "
-              "bounces, fewer editable objects or fewer bins at the second hop", objects, bounces,
+    log_error("%u albedos and %u bounces make %.3g products of factors, more than %d; expected fewer "
+              "bounces, --group, or fewer bins at the second hop", classes, bounces,
               (double)count, EDIT_MOST_GROUPS);
     return false;
 }
 
-bool edit_groups_init(struct edit_groups *g, const struct edit_plan *plan, const uint32_t *series,
-                      uint32_t bounces) {
+bool edit_groups_init(struct edit_groups *g, const struct edit_plan *plan,
+                      const struct edit_classes *classes, const uint32_t *series, uint32_t bounces) {
     *g = (struct edit_groups){.objects = plan->count, .bounces = bounces,
+                              .classes = classes ? classes->count : plan->count,
                               .coarse = bounces > 1 ? series[1] : 1};
     const uint64_t coarse = g->coarse > 1 ? coarse_count(plan, g->coarse) : 0;
-    const uint64_t count = edit_groups_count(plan->count, bounces, coarse);
-    if (!check_series(series, bounces) || !check_count(count, plan->count, bounces))
+    const uint64_t count = edit_groups_count(g->classes, bounces, coarse);
+    if (!check_series(series, bounces) || !check_count(count, g->classes, bounces))
         return false;
-    const size_t steps = (size_t)count * plan->count;
+    const size_t steps = (size_t)count * g->classes;
     g->second = mem_array(plan->count, sizeof *g->second);
-    g->factors = mem_array(plan->count + coarse, sizeof *g->factors);
+    g->factors = mem_array(g->classes + coarse, sizeof *g->factors);
     g->parent = mem_array(count, sizeof *g->parent);
     g->last = mem_array(count, sizeof *g->last);
     g->next = mem_array(steps, sizeof *g->next);
     memset(g->next, 0xff, steps * sizeof *g->next);
-    for (uint32_t i = 0; i < plan->count; i++)
+    for (uint32_t i = 0; i < g->classes; i++)
         add_factor(g, (struct edit_factor){i, EDIT_ALBEDO, 0});
     add_group(g, 0, UINT32_MAX);
     uint32_t first = 0;
@@ -180,15 +181,17 @@ static void describe_knots(const struct form *f, uint32_t term, uint32_t bins, s
 }
 
 void edit_groups_describe(const struct edit_groups *g, const struct edit_plan *plan,
-                          struct json *meta) {
+                          const struct edit_classes *classes, struct json *meta) {
     struct json *factors = json_add_array(meta, "factors"), *groups = json_add_array(meta, "groups");
     for (uint32_t i = 0; i < g->factor_count; i++) {
         const struct edit_factor *f = &g->factors[i];
-        const struct form *form = plan->objects[f->object].form;
         struct json *j = json_append_object(factors);
-        json_add_count(j, "object", f->object);
-        if (f->term == EDIT_ALBEDO)
+        if (f->term == EDIT_ALBEDO) {
+            edit_classes_describe(classes, plan, f->object, j);
             continue;
+        }
+        const struct form *form = plan->objects[f->object].form;
+        json_add_count(j, "object", f->object);
         json_add_count(j, "term", f->term);
         json_add_count(j, "bin", f->bin);
         describe_knots(form, f->term, coarse_bins(form, f->term, g->coarse),

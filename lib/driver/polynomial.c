@@ -6,8 +6,7 @@
 
 #include "bsdf/diffuse.h"
 #include "bsdf/editable_data.h"
-#include "bsdf/equivalent_albedo.h"
-#include "curve/form_albedo.h"
+#include "driver/polynomial_pilot.h"
 
 const char *const polynomial_tails[] = {"none", "frozen", "geometric", NULL};
 const char *const polynomial_laters[] = {"lambertian", "kept", NULL};
@@ -107,22 +106,6 @@ static bool all_are_found(const struct polynomial *p) {
 
 // ---- the response -----------------------------------------------------------------------------
 
-// An object's albedo as its factor is at run time (replay/edit_weights.h), by channel.
-static void own_albedo(const struct edit_object *o, double albedo[CURVE_CHANNELS]) {
-    const struct form *f = o->form;
-    static const double none[CURVE_CHANNELS];
-    memcpy(albedo, none, sizeof none);
-    for (uint32_t t = 0; t < f->terms; t++) {
-        double *e = mem_array((size_t)CURVE_CHANNELS * symbolic_places(f, t), sizeof *e);
-        double value[CURVE_CHANNELS];
-        equivalent_albedo(f, t, e);
-        form_term_albedo(f, t, e, value);
-        for (int k = 0; k < CURVE_CHANNELS; k++)
-            albedo[k] += o->share[t][k] * value[k];
-        mem_free(e);
-    }
-}
-
 static bool is_flat(const struct curve *c) {
     for (uint32_t i = 1; i < c->channels * c->basis.count; i++)
         if (c->values[i] != c->values[0])
@@ -141,15 +124,24 @@ static bool is_lambertian(const struct edit_object *o) {
 }
 
 // Lambertian surfaces are shaded faster without, and an albedo of nearly 0 has no shape.
-static spectrum kept_shape(const struct edit_object *o) {
+static bool has_shape(const struct edit_object *o, const double albedo[CURVE_CHANNELS]) {
+    return !is_lambertian(o) && albedo[0] > 1e-3 && albedo[1] > 1e-3 && albedo[2] > 1e-3;
+}
+
+// What an object answers at later hops.
+static void choose_later(struct polynomial *p, uint32_t object, enum polynomial_later later) {
+    struct symbolic_object *o = &p->objects[object];
+    const double *b = p->classes.base[object];
     double albedo[CURVE_CHANNELS];
-    if (is_lambertian(o))
-        return spectrum_grey(0);
-    own_albedo(o, albedo);
-    for (int k = 0; k < CURVE_CHANNELS; k++)
-        if (!(albedo[k] > 1e-3))
-            return spectrum_grey(0);
-    return spectrum_rgb((float)(1 / albedo[0]), (float)(1 / albedo[1]), (float)(1 / albedo[2]));
+    o->factor = p->classes.of[object];
+    o->scale = spectrum_rgb((float)b[0], (float)b[1], (float)b[2]);
+    if (later != LATER_KEPT)
+        return;
+    edit_plan_albedo(&p->plan, object, albedo);
+    o->keeps = has_shape(&p->plan.objects[object], albedo);
+    if (o->keeps)
+        o->scale = spectrum_rgb((float)(b[0] / albedo[0]), (float)(b[1] / albedo[1]),
+                                (float)(b[2] / albedo[2]));
 }
 
 static void make_response(struct polynomial *p, const struct polynomial_options *options) {
@@ -160,11 +152,11 @@ static void make_response(struct polynomial *p, const struct polynomial_options 
         for (uint32_t t = 0; t < o->form->terms; t++)
             o->texture[t] = editable_texture(p->plan.objects[i].material, t);
         o->second = p->groups.second[i];
-        o->kept = options->later == LATER_KEPT ? kept_shape(&p->plan.objects[i]) : spectrum_grey(0);
+        choose_later(p, i, options->later);
     }
     symbolic_init(&p->response);
     p->response.objects = p->objects;
-    p->response.object_count = p->plan.count;
+    p->response.factors = p->classes.count;
     p->response.bounces = options->bounces;
     p->response.next = p->groups.next;
     p->survey = p->response;
@@ -187,6 +179,17 @@ static void make_integrator(struct polynomial *p, const struct polynomial_option
     p->tracer.replicates = 2; // the half-sums
 }
 
+// What objects pass on need not be known where each is alone.
+static bool make_classes(struct polynomial *p, const struct polynomial_options *o) {
+    double(*passed)[CURVE_CHANNELS] = mem_array(p->plan.count, sizeof *passed);
+    if (o->group_count > 0)
+        polynomial_passed(p, o->bounces, passed);
+    const bool done = edit_classes_init(&p->classes, &p->plan, (const double(*)[CURVE_CHANNELS])passed,
+                                        o->group, o->group_count);
+    mem_free(passed);
+    return done;
+}
+
 static bool scene_fits(const struct scene *s) {
     if (s->medium_count == 0)
         return true;
@@ -205,9 +208,11 @@ bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
     bool done = request.done && scene_fits(p->job.scene) && edit_plan_init(&p->plan, p->job.scene);
     if (done)
         find_objects(p);
-    if (done && all_are_found(p) && edit_groups_init(&p->groups, &p->plan, o->series, o->bounces)) {
-        make_response(p, o);
+    if (done)
         make_integrator(p, o);
+    if (done && all_are_found(p) && make_classes(p, o) &&
+        edit_groups_init(&p->groups, &p->plan, &p->classes, o->series, o->bounces)) {
+        make_response(p, o);
         return true;
     }
     polynomial_close(p);
@@ -216,6 +221,7 @@ bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
 
 void polynomial_close(struct polynomial *p) {
     edit_groups_finish(&p->groups);
+    edit_classes_finish(&p->classes);
     edit_plan_finish(&p->plan);
     arena_finish(&p->arena);
     job_close(&p->job);

@@ -11,7 +11,7 @@
 #include "bsdf/equivalent_albedo.h"
 #include "driver/polynomial_layout.h"
 #include "driver/polynomial_resume.h"
-#include "driver/polynomial_tail.h"
+#include "driver/polynomial_pilot.h"
 
 enum { STRIPS_BETWEEN_REPORTS = 8, DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
 
@@ -93,7 +93,7 @@ static struct json *describe(const struct run *r, uint32_t end) {
     }
     edit_plan_describe(&p->plan, meta, terms);
     describe_albedos(r, terms);
-    edit_groups_describe(&p->groups, &p->plan, meta);
+    edit_groups_describe(&p->groups, &p->plan, &p->classes, meta);
     if (o->keep)
         polynomial_resume_describe(meta, p, r->first, end, r->quantum);
     mem_free(terms);

@@ -16,7 +16,7 @@
 enum polynomial_tail {
     TAIL_NONE,   // light that scatters more often is left out
     TAIL_FROZEN, // it scatters from the materials as they are, and adds to the same coefficients
-    TAIL_GEOMETRIC, // the last bounce stands for it, too (driver/polynomial_tail.h)
+    TAIL_GEOMETRIC, // the last bounce stands for it, too (driver/polynomial_pilot.h)
 };
 
 extern const char *const polynomial_tails[]; // "none", "frozen", "geometric", NULL
@@ -33,6 +33,8 @@ struct polynomial_options {
     struct job_options job;     // scene, samples, size, ...; edit_scene is taken
     const char *const *edit;    // materials to be made editable
     size_t edit_count;
+    const char *const *group;   // objects with one factor at later hops (driver/edit_classes.h)
+    size_t group_count;
     uint32_t bounces;           // scattering events that materials can be edited at
     uint32_t series[EDIT_MOST_BOUNCES]; // most bins of a curve at each of them
     enum polynomial_tail tail;
@@ -66,6 +68,7 @@ bool precompute_polynomial(const struct polynomial_options *o, struct polynomial
 struct polynomial {
     struct job job;
     struct edit_plan plan;
+    struct edit_classes classes;
     struct edit_groups groups;
     struct symbolic response, survey;
     struct symbolic_object *objects;

@@ -149,9 +149,12 @@ static bool is_second(const struct symbolic *self, const struct chain *chain, in
 
 // Meets an object's albedo.
 static void take_step(const struct symbolic *self, struct chain *chain, int object) {
+    const struct symbolic_object *o = &self->objects[object];
     struct marks *m = &chain->later[CHAIN_PATH];
-    for (uint32_t i = 0; i < m->count; i++)
-        m->mark[i].index = self->next[m->mark[i].index * self->object_count + (uint32_t)object];
+    for (uint32_t i = 0; i < m->count; i++) {
+        m->mark[i].index = self->next[m->mark[i].index * self->factors + o->factor];
+        m->mark[i].weight *= o->scale;
+    }
 }
 
 static bool is_wide(const struct response *response, const struct trace_context *ctx, int lane,
@@ -161,7 +164,7 @@ static bool is_wide(const struct response *response, const struct trace_context 
     if (self->survey)
         return false;
     return object == CHAIN_FIXED || (depth > 0 && depth < self->bounces &&
-                                     spectrum_is_black(self->objects[object].kept) &&
+                                     !self->objects[object].keeps &&
                                      !is_second(self, &ctx->sink->chains[lane], object));
 }
 
@@ -185,11 +188,7 @@ static const struct closure *resolve_later(const struct symbolic *self, struct c
         return resolve_basis(o, chain->later, o->second, s, wo, stack);
     }
     take_step(self, chain, object);
-    if (spectrum_is_black(o->kept))
-        return resolve_white(wo, stack);
-    for (uint32_t i = 0; i < chain->later[CHAIN_PATH].count; i++)
-        chain->later[CHAIN_PATH].mark[i].weight *= o->kept;
-    return bsdf_resolve(s->bsdf, &s->point, wo, stack);
+    return o->keeps ? bsdf_resolve(s->bsdf, &s->point, wo, stack) : resolve_white(wo, stack);
 }
 
 static const struct closure *resolve(const struct response *response,

@@ -4,8 +4,8 @@
 // What is seen first answers with the basis of its curves: for each term and each pair of functions
 // that are not zero, quotient times cosine (and texture), and where among the object's coefficients
 // that belongs. Every later editable surface is Lambertian with an albedo that is left open, so its
-// answer is the cosine over pi and a step from one group to the next; or it keeps its material, divided
-// by the albedo, so that edits change how much it reflects and not where to; or, where the second hop
+// answer is the cosine over pi and a step from one group to the next; or it keeps its material, over
+// the albedo, so that edits change how much it reflects and not where to; or, where the second hop
 // has curves of its own, the first of them answers with a basis again. After `bounces` scattering events
 // all surfaces answer with their materials as they are, and so do those that are never edited.
 //
@@ -23,7 +23,9 @@ struct symbolic_object {
     bool knows_view;            // some term has a curve over theta_o
     struct bin_sampler sampler;
     const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
-    spectrum kept;          // 1 over the albedo of the material that it keeps later; 0: Lambertian
+    bool keeps;             // its material later, too; else it is Lambertian
+    uint32_t factor;        // its albedo, or that of its class
+    spectrum scale;         // what is left of a later answer when that factor is taken out
 };
 
 struct symbolic {
@@ -31,9 +33,8 @@ struct symbolic {
     const struct symbolic_object *objects;
     const int *object_of_shape; // CHAIN_FIXED: none
     const bool *two_sided;      // by shape
-    uint32_t object_count;
-    uint32_t bounces;
-    const uint32_t *next; // [group][object]: the group that an albedo leads to
+    uint32_t bounces, factors; // factors: albedos
+    const uint32_t *next; // [group][factor]: the group that an albedo leads to
     bool survey; // only finds out what is seen first
 };
 

@@ -104,7 +104,7 @@ void edit_forget(struct edit *e) {
 // Whether weights of coefficients follow from what was touched, and not the scale or f_o alone.
 static bool reaches_weights(const struct edit_tensor *o, const struct edit_touch *t) {
     for (uint32_t i = 0; i < o->factor_count; i++)
-        if (o->factors[i].object == t->object)
+        if (edit_factor_has(&o->factors[i], t->object))
             return true;
     for (uint32_t i = 0; i < o->tensor->block_count; i++)
         for (uint32_t a = 0; o->blocks[i].object == t->object &&

@@ -57,7 +57,7 @@ void edit_focus_init(struct edit_focus *f, const struct edit_tensor *e, uint32_t
     f->powers = arena_alloc(&f->arena, e->group_count * sizeof *f->powers);
     f->power_of = arena_alloc(&f->arena, e->group_count * sizeof *f->power_of);
     for (uint32_t i = 0; i < e->factor_count; i++)
-        f->active[i] = e->factors[i].object == object;
+        f->active[i] = edit_factor_has(&e->factors[i], object);
     for (uint32_t g = 0; g < e->group_count; g++) {
         uint32_t scratch[EDITED_MOST_POWER + 1];
         const struct edited_group part = active_part(f, &e->groups[g], scratch);

@@ -137,8 +137,15 @@ static bool read_objects(struct edit_tensor *e) {
 
 // ---- factors and groups -------------------------------------------------------------------------
 
+bool edit_factor_has(const struct edited_factor *f, uint32_t object) {
+    for (uint32_t i = 0; i < f->count; i++)
+        if (f->members[i].object == object)
+            return true;
+    return false;
+}
+
 static bool read_coarse(struct edit_tensor *e, const struct json *j, struct edited_factor *f) {
-    const struct edited_object *o = &e->objects[f->object];
+    const struct edited_object *o = &e->objects[f->members[0].object];
     const struct json *knots = json_get(j, "knots");
     const size_t n = json_count(knots);
     bool sound = read_index(json_get(j, "term"), o->form.terms, &f->term) && n >= 2 &&
@@ -149,6 +156,36 @@ static bool read_coarse(struct edit_tensor *e, const struct json *j, struct edit
         sound = values[i] > values[i - 1];
     f->knots = values;
     return sound;
+}
+
+// A factor's objects: one, with weight 1, or several.
+static bool read_members(struct edit_tensor *e, const struct json *j, struct edited_factor *f) {
+    const struct json *list = json_get(j, "members");
+    const size_t n = list ? json_count(list) : 1;
+    bool sound = !list || (json_is_array(list) && n >= 1 && n <= e->object_count);
+    struct edited_member *m = arena_alloc(&e->arena, (sound ? n : 1) * sizeof *m);
+    for (size_t i = 0; i < n && sound; i++) {
+        const struct json *own = list ? json_at(list, i) : j;
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            m[i].weight[k] = 1;
+        sound = read_index(json_get(own, "object"), e->object_count, &m[i].object) &&
+                (!list || read_numbers(json_get(own, "weight"), CURVE_CHANNELS, m[i].weight));
+    }
+    f->count = sound ? (uint32_t)n : 0;
+    f->members = m;
+    return sound;
+}
+
+// The members' terms must tell their albedos.
+static bool tell_albedos(const struct edit_tensor *e, uint32_t factor) {
+    const struct edited_factor *f = &e->factors[factor];
+    for (uint32_t i = 0; i < f->count && f->term == EDIT_NOTHING; i++) {
+        const struct edited_object *o = &e->objects[f->members[i].object];
+        for (uint32_t t = 0; t < o->form.terms; t++)
+            if (!o->albedo[t])
+                return fail(e, "factor %u is the albedo of %s, whose terms tell none", factor, o->name);
+    }
+    return true;
 }
 
 static bool read_factors(struct edit_tensor *e) {
@@ -162,13 +199,10 @@ static bool read_factors(struct edit_tensor *e) {
         const struct json *j = json_at(factors, i);
         struct edited_factor *f = &e->factors[i];
         f->term = EDIT_NOTHING;
-        if (!read_index(json_get(j, "object"), e->object_count, &f->object) ||
-            (json_get(j, "term") && !read_coarse(e, j, f)))
+        if (!read_members(e, j, f) || (json_get(j, "term") && !read_coarse(e, j, f)))
             return fail(e, "factor %u is not described", i);
-        const struct edited_object *o = &e->objects[f->object];
-        for (uint32_t t = 0; t < o->form.terms; t++)
-            if (f->term == EDIT_NOTHING && !o->albedo[t])
-                return fail(e, "factor %u is the albedo of %s, whose terms tell none", i, o->name);
+        if (!tell_albedos(e, i))
+            return false;
     }
     return true;
 }

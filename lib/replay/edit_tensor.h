@@ -16,7 +16,9 @@
 //                  "form" (curve/form_json.h)}, ...]; terms of the form may hold
 //                  "share": [r, g, b], the mean of a term's texture (absent: 1),
 //                  "albedo": e_j, [bin A][bin B][channel] in a row
-//     "factors"  [{"object": i} | {"object": i, "term": t, "bin": k, "knots": [...]}, ...], the
+//     "factors"  [{"object": i} | {"members": [{"object": i, "weight": [r, g, b]}, ...]} |
+//                {"object": i, "term": t, "bin": k, "knots": [...]}, ...]: an albedo, a weighted sum of
+//                several, or a coefficient of a coarse curve, the
 //                coarse bins being over the first axis that has several
 //     "groups"   [[indices of factors], ...]; absent: one group without factors
 //
@@ -46,9 +48,15 @@ struct edited_block {
     uint32_t object, term; // EDIT_NOTHING: of no object
 };
 
-struct edited_factor {
+struct edited_member {
     uint32_t object;
-    uint32_t term, bin;  // of a coarse curve; term EDIT_NOTHING: the object's equivalent albedo
+    double weight[CURVE_CHANNELS];
+};
+
+struct edited_factor {
+    uint32_t count; // members: equivalent albedos that are summed; or, of a coarse curve, its object
+    const struct edited_member *members;
+    uint32_t term, bin;  // of a coarse curve; term EDIT_NOTHING: albedos
     const double *knots; // of the coarse curve
 };
 
@@ -75,6 +83,9 @@ void edit_tensor_finish(struct edit_tensor *e);
 static inline bool edit_has_slot(const struct form_term *t, enum form_slot_name slot) {
     return t->slots[slot].gamma.kind != GAMMA_NONE;
 }
+
+// Whether a factor depends on an object.
+bool edit_factor_has(const struct edited_factor *f, uint32_t object);
 
 // The slot of a block's axis.
 enum form_slot_name edit_axis_slot(const struct edit_tensor *e, uint32_t block, uint32_t axis);

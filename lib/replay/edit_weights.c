@@ -55,6 +55,18 @@ static void albedo_value(const struct edited_object *o, double value[CURVE_CHANN
     }
 }
 
+static void albedo_sum(const struct edit_tensor *e, const struct edited_factor *f,
+                       double value[CURVE_CHANNELS]) {
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        value[k] = 0;
+    for (uint32_t i = 0; i < f->count; i++) {
+        double own[CURVE_CHANNELS];
+        albedo_value(&e->objects[f->members[i].object], own);
+        for (int k = 0; k < CURVE_CHANNELS; k++)
+            value[k] += f->members[i].weight[k] * own[k];
+    }
+}
+
 // Where function j of a basis lies: its bin, or halfway to its neighbours.
 static void support(const struct basis *b, uint32_t j, double *lo, double *hi) {
     if (b->kind == BASIS_BOX) {
@@ -93,9 +105,9 @@ static double coarse_mean(const struct edited_object *o, const struct edited_fac
 
 void edit_factor_value(const struct edit_tensor *e, const struct edited_factor *f,
                        double value[CURVE_CHANNELS]) {
-    const struct edited_object *o = &e->objects[f->object];
+    const struct edited_object *o = &e->objects[f->members[0].object];
     if (f->term == EDIT_NOTHING) {
-        albedo_value(o, value);
+        albedo_sum(e, f, value);
         return;
     }
     form_term_outer(&o->form, f->term, value);

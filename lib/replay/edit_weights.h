@@ -12,7 +12,7 @@ bool edit_view_factor(const struct edit_tensor *e, uint32_t block, float *factor
 
 // The value of a factor: an equivalent albedo
 //
-//     d = sum over terms of share f_q mean(f_o) sum_{j,k} cA_j cB_k e[j][k]
+//     d = sum over members of their weight times the sum over terms of share f_q mean(f_o) sum_{j,k} cA_j cB_k e[j][k]
 //
 // (Ben-Artzi 2007, eq. 5.21 to 5.25), mean(f_o) being that over the cosine; or the coefficient of a
 // coarse curve, f_q mean(f_o) times the mean of the curve over the bin with e as weights, which

@@ -55,7 +55,8 @@ static void set_lobe(struct curve *c, int trial) {
 // Brings the albedo to a half; objects that tell none keep their factors.
 static void set_albedo(struct edit_tensor *e, uint32_t object) {
     struct edited_object *o = &e->objects[object];
-    const struct edited_factor all = {.object = object, .term = EDIT_NOTHING};
+    const struct edited_member own = {object, {1, 1, 1}};
+    const struct edited_factor all = {1, &own, .term = EDIT_NOTHING};
     double albedo[CURVE_CHANNELS];
     for (uint32_t t = 0; t < o->form.terms; t++)
         if (!o->albedo[t])

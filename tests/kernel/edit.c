@@ -171,12 +171,13 @@ static void freezing_leaves_little(void) {
     struct edit_focus f;
     CHECK(edit_tensor_init(&e, &t, "test"));
     edit_focus_init(&f, &e, 0, 1); // pot.lid, f_B
-    CHECK(f.power_count == 3 && f.powers[0].count == 0 && f.powers[2].count == 2); // 1, d, d^2
-    CHECK(edit_focus_coefficients(&f, &e, 0) == 3 * 8 && edit_focus_axes(&f, &e, 0) == 2);
-    CHECK(edit_focus_coefficients(&f, &e, 1) == 3 && edit_focus_coefficients(&f, &e, 3) == 3);
+    // 1, d, D, d^2, dD: D is a sum that the object has a part in
+    CHECK(f.power_count == 5 && f.powers[0].count == 0 && f.powers[3].count == 2);
+    CHECK(edit_focus_coefficients(&f, &e, 0) == 5 * 8 && edit_focus_axes(&f, &e, 0) == 2);
+    CHECK(edit_focus_coefficients(&f, &e, 1) == 5 && edit_focus_coefficients(&f, &e, 3) == 5);
     edit_focus_finish(&f);
     edit_focus_init(&f, &e, 1, EDIT_NOTHING);
-    CHECK(f.power_count == 3 && edit_focus_coefficients(&f, &e, 0) == 3); // 1, d, and d times another
+    CHECK(f.power_count == 3 && edit_focus_coefficients(&f, &e, 0) == 3); // 1, D, and D times another
     edit_focus_finish(&f);
     edit_tensor_finish(&e);
     json_destroy((struct json *)(uintptr_t)t.meta);

@@ -63,9 +63,13 @@ static void write_scene(const char *materials, const char *shapes) {
     scene_write("scene.xml", text);
 }
 
+// Objects with one factor at later hops; NULL: none.
+static const char *group;
+
 static struct polynomial_options options_of(uint32_t bounces, uint32_t second) {
     struct polynomial_options o = {.job = {.scene = scene_path("scene.xml"), .spp = 8, .seed = 5},
                                    .bounces = bounces, .series = {16, second, 1, 1, 1, 1, 1, 1},
+                                   .group = &group, .group_count = group != NULL,
                                    .output = tensor_path, .command = "", .version = ""};
     if (bounces == 1)
         o.series[1] = 0;
@@ -77,13 +81,14 @@ static void same_paths(const struct extreme *e, uint32_t bounces, uint32_t secon
     const struct polynomial_options o = options_of(bounces, second);
     struct polynomial_report report;
     struct edited edited;
+    struct polynomial unedited;
     write_scene(e->before, e->shapes);
-    if (!precompute_polynomial(&o, &report))
+    if (!precompute_polynomial(&o, &report) || !polynomial_open(&unedited, &o))
         exit(1);
     struct tensor_file *f = tensor_open(tensor_path);
     CHECK(f && tensor_check_values(f));
     write_scene(e->after, e->shapes);
-    edited_open(&edited, &o, tensor_get(f));
+    edited_open_grouped(&edited, &o, tensor_get(f), &unedited.classes);
     edited_contract(&edited, tensor_get(f), false, a);
     plain_trace(&edited.p, &edited.response, (uint32_t)o.job.spp, b);
     double worst = 0, size = 0;
@@ -95,6 +100,7 @@ static void same_paths(const struct extreme *e, uint32_t bounces, uint32_t secon
     printf("%s, %u bounces, second hop %u: differs by %.2g of the brightest, %.3g\n", e->name, bounces,
            second, worst / size, size);
     CHECK(worst < 1e-4 * size && report.rejected == 0);
+    polynomial_close(&unedited);
     edited_close(&edited);
     tensor_close(f);
 }
@@ -141,6 +147,17 @@ static void too_many(void) {
     const bool done = precompute_polynomial(&o, &report);
     capture_end();
     CHECK(!done && captured_has("1.54e+07 products"));
+}
+
+// All balls but the last have one albedo at later hops: 120 products.
+static void many_together(void) {
+    static char text[1024];
+    size_t n = (size_t)snprintf(text, sizeof text, "balls=b1");
+    for (int i = 2; i < 31; i++)
+        n += (size_t)snprintf(text + n, sizeof text - n, ",b%d", i);
+    group = text;
+    many(32, 8);
+    group = NULL;
 }
 
 // ---- a closed room of albedo 1 ----------------------------------------------------------------
@@ -215,6 +232,7 @@ int main(void) {
     many(4, 8);
     many(32, 3);
     too_many();
+    many_together();
     rooms();
     scene_folder_close();
     return check_result();

@@ -18,6 +18,7 @@ struct edited {
     bool flat;                // Lambertian where the eye sees it, too
     double (*weights)[3];     // by object and place: f_q c_A c_B
     uint32_t first[64];   // of an object in `weights`
+    double (*albedos)[3];     // by object, at later hops
     double (*factors)[3];
     double (*groups)[3];
 };
@@ -31,7 +32,9 @@ static inline void told_albedo(const struct tensor *t, uint32_t object, uint32_t
         CHECK(json_read_number(json_at(list, i), &a[i]));
 }
 
-static inline void edited_factors(struct edited *e, const struct tensor *tensor) {
+// classes: of the tensor's scene.
+static inline void edited_factors(struct edited *e, const struct tensor *tensor,
+                                  const struct edit_classes *classes) {
     const struct polynomial *p = &e->p;
     static float w[3 * MOST_PLACES];
     static double a[3 * MOST_PLACES], top[MOST_FACTORS][3], bottom[MOST_FACTORS][3];
@@ -47,7 +50,7 @@ static inline void edited_factors(struct edited *e, const struct tensor *tensor)
                     const double c = (double)w[3 * j + k], ce = c * a[3 * j + k];
                     const uint32_t place = o->first[t] + j;
                     e->weights[e->first[i] + place][k] = c;
-                    e->factors[i][k] += p->plan.objects[i].share[t][k] * ce;
+                    e->albedos[i][k] += p->plan.objects[i].share[t][k] * ce;
                     if (!o->second)
                         continue;
                     const uint32_t f = p->groups.last[o->second[place]];
@@ -56,7 +59,13 @@ static inline void edited_factors(struct edited *e, const struct tensor *tensor)
                 }
         }
     }
-    for (uint32_t f = p->plan.count; f < p->groups.factor_count; f++)
+    for (uint32_t i = 0; i < p->plan.count; i++)
+        for (int k = 0; k < 3; k++)
+            e->factors[classes->of[i]][k] += classes->share[i][k] * e->albedos[i][k];
+    for (uint32_t i = 0; i < p->plan.count; i++)
+        for (int k = 0; k < 3; k++)
+            e->albedos[i][k] = classes->base[i][k] * e->factors[classes->of[i]][k];
+    for (uint32_t f = classes->count; f < p->groups.factor_count; f++)
         for (int k = 0; k < 3; k++)
             e->factors[f][k] = bottom[f][k] > 0 ? top[f][k] / bottom[f][k] : 0;
 }
@@ -122,7 +131,7 @@ static inline spectrum reference_eval(const struct closure *closure, vec3 wi, fl
     if (!(up[2] > 0))
         return spectrum_grey(0);
     if (!c->inside && !c->coarse) {
-        const double *d = e->factors[c->object];
+        const double *d = e->albedos[c->object];
         *pdf = up[2] * INV_PI;
         return spectrum_rgb((float)d[0], (float)d[1], (float)d[2]) * *pdf;
     }
@@ -283,8 +292,10 @@ static inline void plain_trace(const struct polynomial *p, const struct response
 
 // ---- opening, contracting ----------------------------------------------------------
 
-static inline void edited_open(struct edited *e, const struct polynomial_options *o,
-                               const struct tensor *tensor) {
+// classes: of the scene that the tensor was made of; NULL: no object shares a factor.
+static inline void edited_open_grouped(struct edited *e, const struct polynomial_options *o,
+                                       const struct tensor *tensor,
+                                       const struct edit_classes *classes) {
     memset(e, 0, sizeof *e);
     if (!polynomial_open(&e->p, o))
         exit(1);
@@ -296,15 +307,22 @@ static inline void edited_open(struct edited *e, const struct polynomial_options
             places += symbolic_places(f, t);
     }
     e->weights = mem_array(places, sizeof *e->weights);
+    e->albedos = mem_array(e->p.plan.count, sizeof *e->albedos);
     e->factors = mem_array(e->p.groups.factor_count, sizeof *e->factors);
     e->groups = mem_array(e->p.groups.count, sizeof *e->groups);
-    edited_factors(e, tensor);
+    edited_factors(e, tensor, classes ? classes : &e->p.classes);
     edited_groups(e);
     e->response.resolve = reference_resolve;
 }
 
+static inline void edited_open(struct edited *e, const struct polynomial_options *o,
+                               const struct tensor *tensor) {
+    edited_open_grouped(e, o, tensor, NULL);
+}
+
 static inline void edited_close(struct edited *e) {
     mem_free(e->weights);
+    mem_free(e->albedos);
     mem_free(e->factors);
     mem_free(e->groups);
     polynomial_close(&e->p);

@@ -18,7 +18,7 @@ static void groups_are_multisets(uint32_t objects, uint32_t bounces) {
     const struct edit_plan plan = {.count = objects};
     const uint32_t series[EDIT_MOST_BOUNCES] = {64, 1, 1, 1, 1, 1, 1, 1};
     struct edit_groups g;
-    CHECK(edit_groups_init(&g, &plan, series, bounces));
+    CHECK(edit_groups_init(&g, &plan, NULL, series, bounces));
     CHECK(g.count == choose(bounces - 1 + objects, objects));
     CHECK(g.count == edit_groups_count(objects, bounces, 0));
     uint32_t wrong = 0, longest = 0;
