@@ -102,18 +102,6 @@ static double moment_below(const struct slope *s, double t, double F) {
     return all - (width * (1 - F) - 2.0 / 3 * y * y * y * s->fall);
 }
 
-static uint32_t interval_of(const struct overlap_axis *a, double gamma) {
-    const uint32_t last = basis_intervals(&a->basis) - 1;
-    double t;
-    if (!(gamma > 0))
-        return 0;
-    if (a->per_step > 0) {
-        const double place = gamma * a->per_step;
-        return place < last ? (uint32_t)place : last;
-    }
-    return gamma < a->basis.knots[last + 1] ? basis_interval(&a->basis, gamma, &t) : last;
-}
-
 static bool ends(const struct overlap_axis *a) {
     return a->gamma.kind == GAMMA_THETA_R;
 }
@@ -132,7 +120,7 @@ static void add_at(const struct overlap_axis *a, double gamma, double part, doub
                    struct range *r) {
     const struct basis *b = &a->basis;
     const double *k = b->knots, last = k[basis_intervals(b)];
-    const uint32_t i = interval_of(a, gamma);
+    const uint32_t i = overlap_interval(a, gamma);
     const bool hat = b->kind == BASIS_HAT;
     if (gamma > last && ends(a))
         return;
@@ -152,7 +140,7 @@ static void add_upper(const struct overlap_axis *a, const struct slope *s, doubl
     const struct basis *b = &a->basis;
     const uint32_t n = basis_intervals(b);
     const bool hat = b->kind == BASIS_HAT;
-    uint32_t i = interval_of(a, s->g[0]);
+    uint32_t i = overlap_interval(a, s->g[0]);
     double from = larger(s->g[0], 0), F = below(s, from), M = hat ? moment_below(s, from, F) : 0;
     for (; i < n && F < 1; i++) {
         const double low = b->knots[i], high = b->knots[i + 1];
@@ -223,8 +211,8 @@ void overlap_add_point(struct overlap *o, const double gamma[OVERLAP_AXES],
 static const int parts[4][3] = {{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}};
 
 static bool within_one_interval(const struct overlap_axis *a, double least, double most) {
-    return least >= 0 ? interval_of(a, least) == interval_of(a, most)
-                      : most <= 0 && interval_of(a, -least) == interval_of(a, -most);
+    return least >= 0 ? overlap_interval(a, least) == overlap_interval(a, most)
+                      : most <= 0 && overlap_interval(a, -least) == overlap_interval(a, -most);
 }
 
 // How the shares of an axis will be wrong when gamma counts as linear over the triangle: the shift
@@ -240,7 +228,7 @@ static double error_of(const struct overlap_axis *a, const double g[OVERLAP_NODE
     *single = within_one_interval(a, least, most);
     if (*single && a->basis.kind == BASIS_BOX)
         return 0;
-    const uint32_t i = interval_of(a, fabs(least));
+    const uint32_t i = overlap_interval(a, fabs(least));
     const double step = a->basis.knots[i + 1] - a->basis.knots[i];
     return bend / larger(most - least, a->basis.kind == BASIS_HAT ? step : FLAT);
 }

@@ -30,6 +30,19 @@ struct overlap_axis {
     double per_step; // intervals a radian, of evenly spaced knots; 0: others
 };
 
+// The interval between knots that gamma lies in; the last one beyond them.
+static inline uint32_t overlap_interval(const struct overlap_axis *a, double gamma) {
+    const uint32_t last = basis_intervals(&a->basis) - 1;
+    double t;
+    if (!(gamma > 0))
+        return 0;
+    if (a->per_step > 0) {
+        const double place = gamma * a->per_step;
+        return place < last ? (uint32_t)place : last;
+    }
+    return gamma < a->basis.knots[last + 1] ? basis_interval(&a->basis, gamma, &t) : last;
+}
+
 // What lights are added to.
 struct overlap {
     uint32_t axes; // 0 to 2

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/log.h"
+#include "integrator/camera_packet.h"
 #include "sink/film.h"
 
 struct aov {
@@ -89,15 +90,9 @@ static bool find_solid(struct trace_context *ctx, int lane, const struct path_st
 static void trace_first_hits(struct trace_context *ctx, const struct path_start starts[SINK_LANES]) {
     struct ray rays[SINK_LANES];
     struct accel_hit hits[SINK_LANES];
-    for (int i = 0; i < SINK_LANES; i++)
-        rays[i] = starts[i].ray;
-    accel_intersect16(ctx->world->accel, rays, 0xffff, true, hits);
-    ctx->rays += SINK_LANES;
-    ctx->paths += SINK_LANES;
+    camera_packet_trace(ctx, starts, rays, hits);
     for (int i = 0; i < SINK_LANES; i++) {
         struct surface s;
-        if (ctx->world->hides)
-            world_see(ctx->world, &rays[i], &hits[i]);
         if (!find_solid(ctx, i, &starts[i], &rays[i], &hits[i], &s))
             continue;
         ctx->sink->type->covered(ctx->sink, i);

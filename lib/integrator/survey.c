@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is seen first, and no more of it than a survey needs to know.
+#include "integrator/camera_packet.h"
 #include "integrator/symbolic.h"
 
 // Whether the shape alone tells the object.
@@ -23,17 +24,10 @@ static void see(const struct symbolic *s, struct trace_context *ctx, int lane,
 static void trace(const void *data, struct trace_context *ctx, const struct path_start *starts) {
     struct ray rays[SINK_LANES];
     struct accel_hit hits[SINK_LANES];
+    camera_packet_trace(ctx, starts, rays, hits);
     for (int i = 0; i < SINK_LANES; i++)
-        rays[i] = starts[i].ray;
-    accel_intersect16(ctx->world->accel, rays, 0xffff, true, hits);
-    ctx->rays += SINK_LANES;
-    ctx->paths += SINK_LANES;
-    for (int i = 0; i < SINK_LANES; i++) {
-        if (ctx->world->hides)
-            world_see(ctx->world, &rays[i], &hits[i]);
         if (hits[i].shape != SCENE_NONE)
             see(data, ctx, i, &rays[i], &hits[i]);
-    }
 }
 
 const struct integrator_type integrator_survey = {.entry = {.name = "survey"}, .trace = trace};

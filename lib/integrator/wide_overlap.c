@@ -98,18 +98,6 @@ static void add_upper(const struct overlap_axis *a, const struct slopes *s, uint
         add_boxes(a, s, last, from_0, out);
 }
 
-static uint32_t interval_of(const struct overlap_axis *a, double gamma) {
-    const uint32_t last = basis_intervals(&a->basis) - 1;
-    double t;
-    if (!(gamma > 0))
-        return 0;
-    if (a->per_step > 0) {
-        const double place = gamma * a->per_step;
-        return place < last ? (uint32_t)place : last;
-    }
-    return gamma < a->basis.knots[last + 1] ? basis_interval(&a->basis, gamma, &t) : last;
-}
-
 // The quadratic through the nodes at the corners of all parts.
 static void interpolate(const float g[OVERLAP_NODES], wide out[3]) {
     const float c3 = 2 * (g[1] + g[0]) - 4 * g[3], c5 = 2 * (g[2] + g[0]) - 4 * g[5];
@@ -136,8 +124,8 @@ static bool deal(const struct overlap_axis *a, const double gamma[OVERLAP_NODES]
     if (bend > MOST_BEND * (most - least))
         return false;
     const bool straddles = least < 0;
-    const uint32_t last = interval_of(a, (double)maxf(most + 0.25f * bend, -least));
-    out->first = straddles ? 0 : interval_of(a, (double)(least - 0.25f * bend));
+    const uint32_t last = overlap_interval(a, (double)maxf(most + 0.25f * bend, -least));
+    out->first = straddles ? 0 : overlap_interval(a, (double)(least - 0.25f * bend));
     out->count = last - out->first + 1 + (a->basis.kind == BASIS_HAT);
     if (out->count > MOST)
         return false;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "sink/ignore.h"
 
 struct sums_view {
     struct sink sink; // first
@@ -34,29 +35,14 @@ static void view_add(struct sink *s, int lane, const struct contribution *c) {
         v->tile[c->depth][k] += (double)value[k];
 }
 
-static void view_begin(struct sink *s, int lane) {
-    (void)s, (void)lane;
-}
-
-static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
-    (void)s, (void)lane, (void)first;
-}
-
-static void view_end(struct sink *s, int lane, float weight) {
-    (void)s, (void)lane, (void)weight;
-}
-
-static void view_close(struct sink *s) {
-    (void)s;
-}
-
 static void view_destroy(struct sink *s) {
     mem_free(s);
 }
 
 static const struct sink_type view_type = {
-    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin, .add = view_add,
-    .surface = view_surface, .covered = view_begin, .end = view_end, .destroy = view_destroy};
+    .open = view_open, .close = sink_ignore_close, .place = view_place,
+    .begin = sink_ignore_lane, .add = view_add, .covered = sink_ignore_lane,
+    .end = sink_ignore_end, .destroy = view_destroy};
 
 struct sink *bounce_sums_sink(void *bounce_sums) {
     struct sums_view *v = mem_array(1, sizeof *v);

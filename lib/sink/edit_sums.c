@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "sink/ignore.h"
 
 enum { HALVES = 2, FIXED_CELLS = 3 };
 
@@ -165,14 +166,6 @@ static void view_add(struct sink *s, int lane, const struct contribution *c) {
         }
 }
 
-static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
-    (void)s, (void)lane, (void)first;
-}
-
-static void view_covered(struct sink *s, int lane) {
-    (void)s, (void)lane;
-}
-
 static void view_end(struct sink *s, int lane, float weight) {
     struct edit_view *v = (void *)s;
     const struct edit_lane *l = &v->lanes[lane];
@@ -311,8 +304,8 @@ static void view_destroy(struct sink *s) {
 }
 
 static const struct sink_type view_type = {
-    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin, .add = view_add,
-    .surface = view_surface, .covered = view_covered, .end = view_end, .destroy = view_destroy};
+    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin,
+    .add = view_add, .covered = sink_ignore_lane, .end = view_end, .destroy = view_destroy};
 
 struct sink *edit_sums_sink(void *edit_sums) {
     struct edit_view *v = mem_array(1, sizeof *v);

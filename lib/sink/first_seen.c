@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "sink/ignore.h"
 
 enum { LIST_LANES = 64 };
 
@@ -38,14 +39,6 @@ static void view_begin(struct sink *s, int lane) {
     chain_begin(&v->chains[lane]);
 }
 
-static void view_add(struct sink *s, int lane, const struct contribution *c) {
-    (void)s, (void)lane, (void)c;
-}
-
-static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
-    (void)s, (void)lane, (void)first;
-}
-
 static void view_covered(struct sink *s, int lane) {
     ((struct seen_view *)(void *)s)->lanes[lane].covered = true;
 }
@@ -76,17 +69,14 @@ static void view_end(struct sink *s, int lane, float weight) {
     seen->view += rint((double)c->view * 0x1p24) * 0x1p-24;
 }
 
-static void view_close(struct sink *s) {
-    (void)s;
-}
-
 static void view_destroy(struct sink *s) {
     mem_free(s);
 }
 
 static const struct sink_type view_type = {
-    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin, .add = view_add,
-    .surface = view_surface, .covered = view_covered, .end = view_end, .destroy = view_destroy};
+    .open = view_open, .close = sink_ignore_close, .place = view_place, .begin = view_begin,
+    .add = sink_ignore_add, .surface = sink_ignore_surface, .covered = view_covered,
+    .end = view_end, .destroy = view_destroy};
 
 struct sink *first_seen_sink(void *first_seen) {
     struct seen_view *v = mem_array(1, sizeof *v);

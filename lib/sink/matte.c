@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "sink/ignore.h"
 
 enum { MOST_NAMES = 24 }; // of a pixel: the smallest are merged into what is left out
 
@@ -103,18 +104,10 @@ static void view_begin(struct sink *s, int lane) {
     ((struct view *)(void *)s)->lanes[lane].seen = false;
 }
 
-static void view_add(struct sink *s, int lane, const struct contribution *c) {
-    (void)s, (void)lane, (void)c;
-}
-
 static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
     struct view *v = (void *)s;
     v->lanes[lane].name = v->matte->options.name(v->matte->options.context, first);
     v->lanes[lane].seen = true;
-}
-
-static void view_covered(struct sink *s, int lane) {
-    (void)s, (void)lane;
 }
 
 static void view_end(struct sink *s, int lane, float weight) {
@@ -138,8 +131,8 @@ static void view_destroy(struct sink *s) {
 
 static const struct sink_type view_type = {
     .open = view_open, .close = view_close, .place = view_place, .begin = view_begin,
-    .add = view_add, .surface = view_surface, .covered = view_covered, .end = view_end,
-    .destroy = view_destroy};
+    .add = sink_ignore_add, .surface = view_surface, .covered = sink_ignore_lane,
+    .end = view_end, .destroy = view_destroy};
 
 struct sink *matte_sink(void *matte) {
     struct view *v = mem_array(1, sizeof *v);

@@ -5,6 +5,7 @@
 #include <stdatomic.h>
 
 #include "base/mem.h"
+#include "sink/ignore.h"
 
 struct view {
     struct sink sink; // first, so that a sink is its view
@@ -41,10 +42,6 @@ static void view_add(struct sink *s, int lane, const struct contribution *c) {
     ((struct view *)(void *)s)->sample[lane] += c->weight * c->emission;
 }
 
-static void view_covered(struct sink *s, int lane) {
-    (void)s, (void)lane;
-}
-
 static void view_end(struct sink *s, int lane, float weight) {
     struct view *v = (void *)s;
     const spectrum value = weight * v->sample[lane];
@@ -62,7 +59,7 @@ static void view_destroy(struct sink *s) {
 
 static const struct sink_type view_type = {
     .open = view_open, .close = view_close, .place = view_place, .begin = view_begin,
-    .add = view_add, .covered = view_covered, .end = view_end, .destroy = view_destroy};
+    .add = view_add, .covered = sink_ignore_lane, .end = view_end, .destroy = view_destroy};
 
 struct sink *meters_sink(void *meters) {
     struct view *v = mem_array(1, sizeof *v);

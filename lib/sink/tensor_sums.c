@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "sink/ignore.h"
 
 enum { TILE_PIXELS = SINK_TILE * SINK_TILE, HALVES = 2 };
 
@@ -109,14 +110,6 @@ static void view_end(struct sink *s, int lane, float weight) {
         deposit(&v->sums->options.basis, l->cells, &l->deposits[i], (double)weight);
 }
 
-static void view_surface(struct sink *s, int lane, const struct sink_surface *first) {
-    (void)s, (void)lane, (void)first;
-}
-
-static void view_covered(struct sink *s, int lane) {
-    (void)s, (void)lane;
-}
-
 // ---- the tile -----------------------------------------------------------------------------------
 
 static void store(void *values, enum tensor_storage storage, size_t i, double value) {
@@ -190,8 +183,8 @@ static void view_destroy(struct sink *s) {
 }
 
 static const struct sink_type view_type = {
-    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin, .add = view_add,
-    .surface = view_surface, .covered = view_covered, .end = view_end, .destroy = view_destroy};
+    .open = view_open, .close = view_close, .place = view_place, .begin = view_begin,
+    .add = view_add, .covered = sink_ignore_lane, .end = view_end, .destroy = view_destroy};
 
 struct sink *tensor_sums_sink(void *tensor_sums) {
     struct tensor_view *v = mem_array(1, sizeof *v);
