@@ -22,6 +22,7 @@ static void print_json(const struct budget_run *run, const struct budget_report 
     json_add_text(j, "output", run->output);
     json_add_number(j, "budget", run->relmse);
     json_add_number(j, "storage_relmse", r->worst);
+    json_add_number(j, "rgbe_relmse", r->rgbe);
     json_add_number(j, "noise_relmse", r->noise);
     json_add_number(j, "noise_change", r->noise_change);
     json_add_count(j, "bytes", (int64_t)r->bytes);

@@ -144,6 +144,14 @@ static double search(struct budget *b, bool halves, double budget, double relmse
     return measure(b, halves, relmse);
 }
 
+// The error of the layout of Ben-Artzi 2007: RGBE for all.
+static double rgbe_error(struct budget *b) {
+    double relmse[TRIALS];
+    for (uint32_t i = 0; i < b->tensor->block_count; i++)
+        memset(b->blocks[i].ways[0], WAY_row_rgbe, rows_of(&b->blocks[i].from));
+    return measure(b, false, relmse);
+}
+
 // The noise that the halves tell of, as relMSE; if `changed`, with the halves as they are stored.
 static double told_noise(struct budget *b, bool changed, int trial) {
     float *sum[TRIALS];
@@ -269,6 +277,7 @@ static bool store(struct budget *b, struct edit_tensor *e, const char *output, s
         search(b, true, fmax(NOISE_SHARE * r->noise, 1e-30), unused);
         r->noise_change = r->noise > 0 ? told_noise(b, true, 0) / r->noise - 1 : 0;
     }
+    r->rgbe = rgbe_error(b);
     r->worst = search(b, false, b->options->relmse, r->relmse);
     count_rows(b, r);
     const bool written = write_file(b, output, r);

@@ -26,6 +26,7 @@ struct budget_report {
     uint64_t rows[ROW_WAYS];     // of the values
     double relmse[4];            // of each trial
     double worst;                // of them
+    double rgbe;                 // the largest if all rows were stored as RGBE
     double noise;                // the tensor's own, by its halves, of the picture as it is
     double noise_change;         // of the noise told, relative
 };

@@ -26,8 +26,8 @@ struct budget {
     struct arena arena;
 };
 
-// A coefficient of a new tile.
-void budget_gather(const struct budget_block *b, bool halves, size_t tile, uint32_t coefficient,
+// A coefficient of a new tile. Whether any of it is not zero.
+bool budget_gather(const struct budget_block *b, bool halves, size_t tile, uint32_t coefficient,
                    float row[ROW_VALUES]);
 
 // Adds up, for each trial, coefficients times weights; of `errors` what rows in their ways differ by.

@@ -47,7 +47,7 @@ void budget_order(struct budget_block *b, uint32_t width, struct arena *arena) {
     mem_free(places);
 }
 
-void budget_gather(const struct budget_block *b, bool halves, size_t tile, uint32_t coefficient,
+bool budget_gather(const struct budget_block *b, bool halves, size_t tile, uint32_t coefficient,
                    float row[ROW_VALUES]) {
     const void *data = halves ? b->from.halves : b->from.values;
     const float *f = data;
@@ -61,6 +61,10 @@ void budget_gather(const struct budget_block *b, bool halves, size_t tile, uint3
                                              ? bf16_to_float(h[at + k * TILE_LANES])
                                              : f[at + k * TILE_LANES];
     }
+    bool any = false;
+    for (uint32_t i = 0; i < ROW_VALUES; i++)
+        any |= row[i] != 0;
+    return any;
 }
 
 // ---- pictures -----------------------------------------------------------------------------------
@@ -89,7 +93,8 @@ static void add_tile(void *ctx, size_t tile, int worker) {
     float sum[TRIALS][ROW_VALUES] = {{0}}, row[ROW_VALUES], error[ROW_VALUES];
     (void)worker;
     for (uint32_t c = 0; c < b->from.coefficients; c++) {
-        budget_gather(b, p->halves, tile, c, row);
+        if (!budget_gather(b, p->halves, tile, c, row))
+            continue;
         if (p->errors)
             find_error(b->ways[p->halves][tile * b->from.coefficients + c], row, error);
         for (int t = 0; t < TRIALS; t++)
@@ -157,10 +162,12 @@ static void cost_tile(void *ctx, size_t tile, int worker) {
         tile_loss(p, t, tile, loss[t]);
     for (uint32_t c = 0; c < b->from.coefficients; c++) {
         float *costs = b->costs + (tile * b->from.coefficients + c) * ROW_WAYS;
-        budget_gather(b, p->halves, tile, c, row);
+        const bool any = budget_gather(b, p->halves, tile, c, row);
         for (uint32_t way = 0; way < ROW_WAYS; way++) {
-            find_error(way, row, error);
-            costs[way] = way == WAY_row_float32 ? 0 : row_cost(p, c, error, (const float(*)[ROW_VALUES])loss);
+            const bool exact = !any || way == WAY_row_float32;
+            if (!exact)
+                find_error(way, row, error);
+            costs[way] = exact ? 0 : row_cost(p, c, error, (const float(*)[ROW_VALUES])loss);
         }
     }
 }
