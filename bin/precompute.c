@@ -8,6 +8,7 @@
 #include "budget.h"
 #include "driver/edit_groups.h"
 #include "driver/precompute_relight.h"
+#include "driver/ranks.h"
 #include "driver/stop.h"
 #include "precompute.h"
 #include "scene_options.h"
@@ -69,12 +70,14 @@ static const struct option_spec options[] = {
              "then 400:4000, which refines it"},
     {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "SECONDS", .min = 0,
      .max = 1e9, .help = "edit: stop after so long: 90, 90s, 15m, 2h"},
+    {.name = "noise", .type = OPTION_NUMBER, .offset = AT(noise), .argument = "X", .min = 0,
+     .max = 1e6, .def = "0", .help = "edit: stop when the relative error of the picture as it is is no more"},
     {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
      .min = 0, .max = 1e9, .help = "edit: every so often write the tensor of the samples so far, which can\n"
      "be edited already"},
     {.name = "resume", .type = OPTION_FLAG, .offset = AT(resume),
      .help = "edit: go on from the output if it is there, also to more samples than\n"
-             "before. These four keep exact sums in the tensor, which make it three\n"
+             "before. These five keep exact sums in the tensor, which make it three\n"
              "times as large; `relume tensor requantise` drops them. --direct:\n"
              "work is kept in T.part, even when killed, and gone on with"},
     OPTION_SIZE(struct precompute_values, size),
@@ -161,6 +164,16 @@ static int run_relight(const struct precompute_values *v, const char *command,
     return done ? EXIT_DONE : EXIT_FAILED;
 }
 
+// Only tensors with all bounces are made by several processes.
+static bool ranks_fit(const struct precompute_values *v, bool edit) {
+    if (ranks_count() == 1 || (edit && !v->direct))
+        return true;
+    if (ranks_index() == 0)
+        log_error("precompute %s%s: expected one process, found %d", v->kind,
+                  v->direct ? " --direct" : "", ranks_count());
+    return false;
+}
+
 static int run(const void *values, const char *command) {
     const struct precompute_values *v = values;
     const bool edit = strcmp(v->kind, "edit") == 0;
@@ -168,16 +181,16 @@ static int run(const void *values, const char *command) {
         log_error("precompute %s: expected relight or edit", v->kind);
         return EXIT_USAGE;
     }
-    const bool by_and_by = v->seconds > 0 || v->checkpoint > 0;
+    const bool by_and_by = v->seconds > 0 || v->noise > 0 || v->checkpoint > 0;
     if (precompute_is_progressive(v) && (!edit || (v->direct && by_and_by))) {
-        log_error("--samples, --time, --checkpoint and --resume go with edit, --time and --checkpoint "
-                  "without --direct");
+        log_error("--samples, --time, --noise, --checkpoint and --resume go with edit, and without "
+                  "--direct all of them");
         return EXIT_USAGE;
     }
     double relmse = 0;
     if (v->budget && (!edit || v->half || precompute_is_progressive(v))) {
         log_error("--budget goes with edit, without --half and without sums that are kept (--samples, "
-                  "--time, --checkpoint, --resume); store those by `relume tensor requantise --budget`");
+                  "--time, --noise, --checkpoint, --resume); store those by `relume tensor requantise --budget`");
         return EXIT_USAGE;
     }
     if (v->budget && !budget_parse(v->budget, &relmse))
@@ -186,11 +199,15 @@ static int run(const void *values, const char *command) {
         log_set_level(LOG_WARN);
     struct arena arena = {0};
     const struct scene_define *defines = defines_parse(&v->defines, &arena);
-    int code = !defines ? EXIT_USAGE
-               : edit   ? precompute_edit_run(v, command, defines)
-                        : run_relight(v, command, defines);
+    ranks_start();
+    if (ranks_index() > 0)
+        log_set_level(LOG_ERROR); // rank 0 says it once
+    int code = !defines || !ranks_fit(v, edit) ? EXIT_USAGE
+               : edit                          ? precompute_edit_run(v, command, defines)
+                                               : run_relight(v, command, defines);
+    ranks_finish();
     arena_finish(&arena);
-    if (code == EXIT_DONE && v->budget && !v->dry_run && !budget_run(&(struct budget_run){
+    if (code == EXIT_DONE && v->budget && ranks_index() == 0 && !v->dry_run && !budget_run(&(struct budget_run){
             .tensor = v->output, .output = v->output, .command = command, .relmse = relmse,
             .threads = v->threads, .quiet = v->quiet, .json = v->json}))
         code = EXIT_FAILED;

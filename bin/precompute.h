@@ -11,7 +11,7 @@ struct precompute_values {
         *budget;
     int spp, size[2], crop[4], max_depth, seed, threads, bounces;
     int lights, light_samples, packets;
-    double memory, seconds, checkpoint;
+    double memory, seconds, checkpoint, noise;
     bool resume, half, dry_run, lenient, quiet, json, direct, unshadowed;
     struct option_list defines, edit, group;
 };
@@ -20,7 +20,7 @@ extern const char *const precompute_packets[]; // "auto", "pixels", "lights", NU
 
 // Whether it is to be made in ranges of samples or by and by, which edit with --bounces can.
 static inline bool precompute_is_progressive(const struct precompute_values *v) {
-    return v->samples || v->seconds > 0 || v->checkpoint > 0 || v->resume;
+    return v->samples || v->seconds > 0 || v->noise > 0 || v->checkpoint > 0 || v->resume;
 }
 
 // The scene as asked for.

@@ -6,6 +6,7 @@
 #include "base/log.h"
 #include "base/progress.h"
 #include "driver/precompute_polynomial.h"
+#include "driver/ranks.h"
 #include "precompute.h"
 #include "subcommand.h"
 
@@ -65,6 +66,8 @@ static void report(const struct precompute_values *v, const struct polynomial_re
                  "per pixel %s %s (%.1f MB of sums)", v->output, r->objects, r->groups,
                  r->coefficients, (double)r->file_bytes * 1e-6, (unsigned long long)r->samples,
                  v->dry_run ? "would take" : "took", time, (double)r->sums_bytes * 1e-6);
+    if (!v->quiet && r->noise >= 0)
+        log_info("noise of the picture as it is: %.3g %%", 100 * r->noise);
     if (v->json) {
         struct json *j = json_new_object();
         json_add_text(j, "output", v->output);
@@ -79,6 +82,8 @@ static void report(const struct precompute_values *v, const struct polynomial_re
         json_add_count(j, "rays", (int64_t)r->rays);
         json_add_count(j, "rejected_samples", (int64_t)r->rejected);
         json_add_number(j, "seconds", r->seconds);
+        if (r->noise >= 0)
+            json_add_number(j, "noise", r->noise);
         json_print(j, false);
         json_destroy(j);
     }
@@ -98,12 +103,17 @@ int precompute_polynomial_run(const struct precompute_values *v, const char *com
         .dry_run = v->dry_run, .command = command, .version = RELUME_VERSION,
         .progress = v->quiet || v->dry_run ? NULL : show_progress, .user = &progress};
     o.job.seconds = v->seconds;
+    o.job.noise = v->noise;
     if (!samples_parse(v->samples, o.job.samples) || !parse_series(v->series, o.bounces, o.series) ||
         !parse_tail(v->tail, &o.tail) || !parse_later(v->later, &o.later))
         return EXIT_USAGE;
-    progress_begin(&progress, "precompute", v->quiet);
+    if (ranks_index() > 0)
+        o.progress = NULL;
+    progress_begin(&progress, "precompute", !o.progress);
     const bool done = precompute_polynomial(&o, &result);
     progress_end(&progress);
+    if (ranks_index() > 0) // rank 0 reports
+        return done ? EXIT_DONE : EXIT_FAILED;
     const bool valid = done || (result.stopped && result.samples > 0);
     if (valid)
         report(v, &result);

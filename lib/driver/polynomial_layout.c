@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "driver/ranks.h"
+
 static const float some;
 static const double some_sums;
 
@@ -43,16 +45,46 @@ static const struct tensor_block *find_block(const struct tensor *t, const char 
     return NULL;
 }
 
+// What an earlier tensor knows of an object.
+struct known {
+    uint64_t count;
+    bool has_views;
+    const uint32_t *pixels;
+    const double *views; // [2][lanes]
+};
+
+static struct known known_of(const struct polynomial_layout *l, const struct tensor *base,
+                             uint32_t object) {
+    const char *name = object_name(l->p, object);
+    const struct tensor_block *b = find_block(base, name, NULL);
+    struct known k = {.count = 0};
+    if (!b)
+        return k;
+    k = (struct known){b->pixel_count, false, b->pixels, NULL};
+    for (uint32_t i = 0; i < base->block_count; i++)
+        if (strcmp(base->blocks[i].object, name) == 0 && base->blocks[i].views)
+            k.views = base->blocks[i].views;
+    k.has_views = k.views != NULL;
+    return k;
+}
+
+// Rank 0 has the earlier tensor; sums of all ranks must lie alike.
 static void know_base(struct polynomial_layout *l, const struct tensor *base) {
     for (uint32_t i = 0; i <= l->p->plan.count; i++) {
-        const char *name = object_name(l->p, i);
-        const double *views = NULL;
-        for (uint32_t k = 0; base && k < base->block_count; k++)
-            if (strcmp(base->blocks[k].object, name) == 0 && base->blocks[k].views)
-                views = base->blocks[k].views;
-        const struct tensor_block *b = find_block(base, name, NULL);
-        if (b)
-            first_seen_know(l->seen, i, b->pixels, b->pixel_count, views);
+        struct known k = known_of(l, base, i);
+        ranks_broadcast(&k, sizeof k);
+        const size_t lanes = (k.count + TENSOR_LANES - 1) / TENSOR_LANES * TENSOR_LANES;
+        uint32_t *pixels = mem_array(k.count + 1, sizeof *pixels);
+        double *views = mem_array(2 * lanes + 1, sizeof *views);
+        if (ranks_index() == 0 && k.count > 0)
+            memcpy(pixels, k.pixels, k.count * sizeof *pixels);
+        if (ranks_index() == 0 && k.has_views)
+            memcpy(views, k.views, 2 * lanes * sizeof *views);
+        ranks_broadcast(pixels, k.count * sizeof *pixels);
+        ranks_broadcast(views, k.has_views ? 2 * lanes * sizeof *views : 0);
+        first_seen_know(l->seen, i, pixels, k.count, k.has_views ? views : NULL);
+        mem_free(pixels);
+        mem_free(views);
     }
 }
 
@@ -125,9 +157,10 @@ static bool fits(const struct polynomial_layout *l, const struct tensor *base) {
 bool polynomial_layout_init(struct polynomial_layout *l, const struct polynomial *p,
                             const struct polynomial_range *r) {
     *l = (struct polynomial_layout){.p = p};
-    if (!survey(l, r))
+    const bool whole = survey(l, r);
+    know_base(l, r->base); // also where it is not: others wait
+    if (!whole)
         return false;
-    know_base(l, r->base);
     first_seen_list(l->seen);
     l->tensor = (struct tensor){
         .width = (uint32_t)p->job.scene->film.width, .height = (uint32_t)p->job.scene->film.height,

@@ -23,8 +23,9 @@ struct polynomial_range {
     double quantum;
 };
 
-// Traces the camera rays of the range, so that every object they meet is known, and lays the tensor
-// out. false: stopped, or base does not fit; polynomial_layout_finish in either case.
+// All ranks together (driver/ranks.h). Traces the camera rays of the range, so that every object they
+// meet is known, and lays the tensor out. false: stopped, or base does not fit;
+// polynomial_layout_finish in either case.
 bool polynomial_layout_init(struct polynomial_layout *l, const struct polynomial *p,
                             const struct polynomial_range *r);
 void polynomial_layout_finish(struct polynomial_layout *l);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/polynomial_resume.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "replay/edit.h"
+#include "replay/measure.h"
+#include "transport/tensor_meaning.h"
 
 enum { PILOT_TILES = 64, QUANTUM_BITS = 30 };
 
@@ -44,53 +45,41 @@ double polynomial_quantum(const struct polynomial *p) {
     return mean > 1e-30 && mean < 1e30 ? exp2(floor(log2(mean)) - QUANTUM_BITS) : 0x1p-60;
 }
 
-void polynomial_resume_describe(struct json *meta, const struct polynomial *p, uint32_t first,
-                                uint32_t end, double quantum) {
-    struct json *range = json_append_array(json_add_array(meta, "ranges"));
-    json_append_count(range, first);
-    json_append_count(range, end);
-    json_add_number(meta, "quantum", quantum);
-    if (p->tracer.sampler->counted)
-        json_add_count(meta, "sampler points", p->tracer.spp);
-}
-
 static bool refuse(const struct polynomial_options *o, const char *what) {
     log_error("%s: cannot be gone on with: %s", o->output, what);
     return false;
 }
 
-static bool has_count(const struct json *meta, const char *key, int64_t value) {
-    int64_t v;
-    return json_read_integer(json_get(meta, key), &v) && v == value;
-}
-
-static bool has_text(const struct json *meta, const char *key, const char *value) {
-    const char *text = json_text(json_get(meta, key));
-    return text && strcmp(text, value) == 0;
-}
-
-// Whether the options that the coefficients depend on are the same.
-static bool same_options(const struct json *meta, const struct polynomial *p,
-                         const struct polynomial_options *o, double quantum) {
-    char hash[32];
-    double number = 0;
-    snprintf(hash, sizeof hash, "%016" PRIx64, p->job.scene->hash);
-    json_read_number(json_get(meta, "quantum"), &number);
-    bool same = has_text(meta, "scene hash", hash) && number == quantum &&
-                has_count(meta, "seed", o->job.seed) && has_count(meta, "bounces", o->bounces) &&
-                has_text(meta, "tail", polynomial_tails[o->tail]) &&
-                has_text(meta, "later", polynomial_laters[o->later]) &&
-                (!p->tracer.sampler->counted || has_count(meta, "sampler points", p->tracer.spp));
-    const struct json *series = json_get(meta, "series");
-    for (uint32_t i = 0; i < o->bounces && same; i++) {
-        int64_t bins;
-        same = json_read_integer(json_at(series, i), &bins) && bins == o->series[i];
+// As it is when it has been written and read, but for the size, which polynomial_describe tells, too.
+static struct json *as_read(const struct json *meta, const struct json *old) {
+    static const char *const added[] = {"version", "width", "height", NULL}; // by the writer
+    char *text = json_to_text(meta);
+    struct json *read = json_parse(text, strlen(text), "metadata");
+    for (int i = 0; added[i]; i++) {
+        int64_t value = 0;
+        json_read_integer(json_get(old, added[i]), &value);
+        json_add_count(read, added[i], value);
     }
-    return same;
+    mem_free(text);
+    return read;
 }
 
-bool polynomial_resume(const struct polynomial *p, const struct polynomial_options *o,
-                       uint32_t first, double quantum, struct tensor_file **base, uint32_t *next) {
+// Whether these options make a tensor of the same samples.
+static bool same_options(const struct polynomial_options *o, const struct json *old,
+                         const struct json *meta) {
+    struct json *own = as_read(meta, old);
+    const char *other = tensor_other_meaning(old, own);
+    if (!other && !tensor_same_value(json_get(old, "seed"), json_get(own, "seed")))
+        other = "seed";
+    if (other)
+        log_error("%s: cannot be gone on with: it was made of another scene or with other options: "
+                  "\"%s\" differs", o->output, other);
+    json_destroy(own);
+    return !other;
+}
+
+bool polynomial_resume(const struct polynomial_options *o, const struct json *meta, uint32_t first,
+                       struct tensor_file **base, uint32_t *next) {
     int64_t from, to;
     if (!file_exists(o->output))
         return true;
@@ -102,8 +91,8 @@ bool polynomial_resume(const struct polynomial *p, const struct polynomial_optio
     bool fits = false;
     if (!tensor_has_sums(t))
         refuse(o, "it has not kept its sums");
-    else if (!same_options(t->meta, p, o, quantum))
-        refuse(o, "it is of another scene, or was made with other options");
+    else if (!same_options(o, t->meta, meta))
+        fits = false;
     else if (json_count(ranges) != 1 || !json_read_integer(json_at(range, 0), &from) ||
              !json_read_integer(json_at(range, 1), &to) || from != (int64_t)first || to < from ||
              to > INT32_MAX)
@@ -117,4 +106,23 @@ bool polynomial_resume(const struct polynomial *p, const struct polynomial_optio
     tensor_close(*base);
     *base = NULL;
     return false;
+}
+
+bool polynomial_noise(const char *path, int threads, double *noise) {
+    const struct edit_settings settings = {.no_device = true, .threads = threads};
+    struct tensor_file *file = tensor_open(path);
+    const struct tensor *t = file ? tensor_get(file) : NULL;
+    struct edit *e = t ? edit_create(t, path, &settings) : NULL;
+    const size_t plane = t ? (size_t)t->width * t->height : 0;
+    float *frame = mem_array(3 * plane + 1, sizeof *frame), *variance = mem_array(plane + 1, sizeof *frame);
+    const bool done = e && edit_settle(e, frame);
+    if (done) {
+        edit_variance(e, variance);
+        *noise = measure_noise(t, frame, variance);
+    }
+    edit_destroy(e);
+    tensor_close(file);
+    mem_free(frame);
+    mem_free(variance);
+    return done;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Going on from a polynomial tensor that kept its sums.
+// Going on from a polynomial tensor that kept its sums, and when to stop.
 #pragma once
 
 #include "driver/precompute_polynomial.h"
@@ -8,11 +8,11 @@
 // depends on scene and options, not on the range of samples.
 double polynomial_quantum(const struct polynomial *p);
 
-// Adds to the metadata what is needed to go on: "ranges", [[first, end]], and what sums depend on.
-void polynomial_resume_describe(struct json *meta, const struct polynomial *p, uint32_t first,
-                                uint32_t end, double quantum);
+// Opens the output, if it is there, and tells where its samples end. meta: those of a tensor that
+// these options make. false after an error message: they would not have made it.
+bool polynomial_resume(const struct polynomial_options *o, const struct json *meta, uint32_t first,
+                       struct tensor_file **base, uint32_t *next);
 
-// Opens the output, if it is there, and tells where its samples end. false after an error message: it
-// is not what these options would have made.
-bool polynomial_resume(const struct polynomial *p, const struct polynomial_options *o,
-                       uint32_t first, double quantum, struct tensor_file **base, uint32_t *next);
+// What the half-sums of a tensor tell of the picture as the materials are: what `render` calls noise.
+// false after an error message.
+bool polynomial_noise(const char *path, int threads, double *noise);

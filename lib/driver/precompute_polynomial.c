@@ -8,12 +8,13 @@
 #include <unistd.h>
 
 #include "base/thread.h"
-#include "bsdf/equivalent_albedo.h"
+#include "driver/polynomial_describe.h"
 #include "driver/polynomial_layout.h"
-#include "driver/polynomial_resume.h"
 #include "driver/polynomial_pilot.h"
+#include "driver/polynomial_resume.h"
+#include "driver/ranks.h"
 
-enum { STRIPS_BETWEEN_REPORTS = 8, DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
+enum { STRIPS_OF_UNIT = 8, DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
 
 struct run {
     struct polynomial *p;
@@ -21,83 +22,11 @@ struct run {
     struct polynomial_report *report;
     struct polynomial_layout layout; // of the range that is worked on
     double start, quantum;
-    double *(*albedos)[FORM_TERMS];
-    uint32_t first, end;             // samples that are asked for
+    uint32_t first, end; // samples that are asked for
 };
-
-// ---- the metadata -----------------------------------------------------------------------------
 
 static int threads_of(const struct run *r) {
     return r->options->job.threads > 0 ? r->options->job.threads : thread_default_count();
-}
-
-static void find_albedo(void *run, size_t item, int worker) {
-    const struct run *r = run;
-    const size_t i = item / FORM_TERMS, t = item % FORM_TERMS;
-    (void)worker;
-    if (r->albedos[i][t])
-        equivalent_albedo(r->p->plan.objects[i].form, (uint32_t)t, r->albedos[i][t]);
-}
-
-// Equivalent albedos of all terms, for all passes.
-static void find_albedos(struct run *r) {
-    struct polynomial *p = r->p;
-    r->albedos = arena_alloc(&p->arena, p->plan.count * sizeof *r->albedos);
-    for (uint32_t i = 0; i < p->plan.count; i++) {
-        const struct form *f = p->plan.objects[i].form;
-        for (uint32_t t = 0; t < f->terms; t++) {
-            const size_t n = CURVE_CHANNELS * (size_t)symbolic_places(f, t);
-            r->albedos[i][t] = arena_alloc(&p->arena, n * sizeof *r->albedos[i][t]);
-        }
-    }
-    thread_for(threads_of(r), p->plan.count * FORM_TERMS, find_albedo, r);
-}
-
-static void describe_albedos(const struct run *r, struct json *(*terms)[FORM_TERMS]) {
-    for (uint32_t i = 0; i < r->p->plan.count; i++) {
-        const struct form *f = r->p->plan.objects[i].form;
-        for (uint32_t t = 0; t < f->terms; t++) {
-            struct json *list = json_add_array(terms[i][t], "albedo");
-            for (uint32_t k = 0; k < CURVE_CHANNELS * symbolic_places(f, t); k++)
-                json_append_number(list, r->albedos[i][t][k]);
-        }
-    }
-}
-
-static struct json *describe(const struct run *r, uint32_t end) {
-    const struct polynomial_options *o = r->options;
-    const struct polynomial *p = r->p;
-    struct json *meta = json_new_object();
-    struct json *(*terms)[FORM_TERMS] = mem_array(p->plan.count, sizeof *terms);
-    char hash[32];
-    json_add_text(meta, "kind", "edit");
-    json_add_text(meta, "command", o->command);
-    json_add_text(meta, "program", o->version);
-    snprintf(hash, sizeof hash, "%016" PRIx64, p->job.scene->hash);
-    json_add_text(meta, "scene hash", hash);
-    json_add_text(meta, "scene", o->job.scene);
-    json_add_count(meta, "samples", end - r->first);
-    json_add_count(meta, "seed", o->job.seed);
-    json_add_text(meta, "colour space", "linear Rec.709");
-    json_add_text(meta, "lights", "monte carlo");
-    json_add_count(meta, "bounces", o->bounces);
-    struct json *series = json_add_array(meta, "series");
-    for (uint32_t i = 0; i < o->bounces; i++)
-        json_append_count(series, o->series[i]);
-    json_add_text(meta, "tail", polynomial_tails[o->tail]);
-    json_add_text(meta, "later", polynomial_laters[o->later]);
-    if (o->tail == TAIL_GEOMETRIC) {
-        struct json *radius = json_add_array(meta, "radius");
-        for (int k = 0; k < CURVE_CHANNELS; k++)
-            json_append_number(radius, p->radius[k]);
-    }
-    edit_plan_describe(&p->plan, meta, terms);
-    describe_albedos(r, terms);
-    edit_groups_describe(&p->groups, &p->plan, &p->classes, meta);
-    if (o->keep)
-        polynomial_resume_describe(meta, p, r->first, end, r->quantum);
-    mem_free(terms);
-    return meta;
 }
 
 // ---- memory -----------------------------------------------------------------------------------
@@ -120,37 +49,91 @@ static bool fit_memory(struct run *r) {
 
 // ---- tracing ----------------------------------------------------------------------------------
 
+// Samples of some strips; all ranks work on them in units.
+struct tracing {
+    struct run *run;
+    struct edit_sums *sums;
+    struct tracer *tracer;
+    uint32_t strip, strips, of_unit, first, samples;
+    struct edit_sums_cells *handed; // by strip, on other ranks than 0
+};
+
 static uint32_t strip_count(const struct run *r) {
     return tile_grid_count(&r->layout.seen->grid) * r->layout.sums.parts;
 }
 
-static void tell(const struct run *r, uint32_t sample, uint32_t samples, double done) {
+static void forget_handed(struct tracing *t) {
+    for (uint32_t i = 0; t->handed && i < strip_count(t->run); i++) {
+        mem_free(t->handed[i].values);
+        t->handed[i] = (struct edit_sums_cells){NULL, 0};
+    }
+}
+
+static bool work(void *user, uint32_t unit, struct ranks_part *parts, uint32_t *count) {
+    struct tracing *t = user;
+    const volatile sig_atomic_t *stop = t->run->p->tracer.stop;
+    const uint32_t done = unit * t->of_unit, left = t->strips - done;
+    const uint32_t n = left < t->of_unit ? left : t->of_unit, first = t->strip + done;
+    forget_handed(t);
+    *count = n;
+    if ((stop && *stop) || !tracer_run(t->tracer, first, n, t->first, t->samples) || (stop && *stop))
+        return false;
+    for (uint32_t i = 0; i < n && parts; i++)
+        parts[i] = (struct ranks_part){t->handed[first + i].values, t->handed[first + i].count};
+    return true;
+}
+
+static void take(void *user, uint32_t unit, uint32_t part, const double *values, size_t count) {
+    struct tracing *t = user;
+    edit_sums_take(t->sums, t->strip + unit * t->of_unit + part, values, count);
+}
+
+static void tell(void *user, uint32_t units) {
+    const struct tracing *t = user;
+    const struct run *r = t->run;
+    const struct job_options *o = &r->options->job;
+    const double done = fmin((double)units * t->of_unit / t->strips, 1);
+    double share = (t->first - r->first + t->samples * done) / (r->end - r->first);
+    if (o->seconds > 0)
+        share = fmax(share, (time_seconds() - r->start) / o->seconds);
+    if (o->noise > 0 && r->report->noise > 0)
+        share = fmax(share, pow(o->noise / r->report->noise, 2));
     if (r->options->progress)
-        r->options->progress(r->options->user,
-                             (sample - r->first + samples * done) / (r->end - r->first));
+        r->options->progress(r->options->user, fmin(share, 1));
 }
 
 static bool trace(struct run *r, uint32_t strip, uint32_t strips, uint32_t first, uint32_t samples) {
-    const struct tracer_options *o = &r->p->tracer;
-    struct edit_sums *sums = edit_sums_create(&r->layout.sums);
-    struct tracer *tracer = tracer_create(o, edit_sums_sink, sums);
-    bool whole = true;
-    for (uint32_t done = 0; done < strips && whole; done += STRIPS_BETWEEN_REPORTS) {
-        const uint32_t left = strips - done;
-        const uint32_t n = left < STRIPS_BETWEEN_REPORTS ? left : STRIPS_BETWEEN_REPORTS;
-        whole = tracer_run(tracer, strip + done, n, first, samples) && !(o->stop && *o->stop);
-        tell(r, first, samples, (double)(done + n) / strips);
-    }
-    const struct tracer_counts n = tracer_count(tracer);
-    r->report->paths += n.paths;
-    r->report->rays += n.rays + n.shadow_rays;
-    r->report->rejected += edit_sums_rejected(sums);
-    tracer_destroy(tracer);
-    edit_sums_destroy(sums);
+    struct tracing t = {.run = r, .strip = strip, .strips = strips, .first = first,
+                        .samples = samples,
+                        .of_unit = ranks_count() > 1 ? (uint32_t)threads_of(r) : STRIPS_OF_UNIT};
+    if (ranks_index() > 0 && !r->options->dry_run)
+        t.handed = mem_array(strip_count(r), sizeof *t.handed);
+    r->layout.sums.handed = t.handed;
+    t.sums = edit_sums_create(&r->layout.sums);
+    t.tracer = tracer_create(&r->p->tracer, edit_sums_sink, t.sums);
+    const struct ranks_work w = {.units = (strips + t.of_unit - 1) / t.of_unit,
+                                 .most_parts = t.of_unit, .work = work, .take = take,
+                                 .progress = tell, .user = &t};
+    const bool whole = r->options->dry_run ? ranks_work_alone(&w) : ranks_share(&w);
+    const struct tracer_counts n = tracer_count(t.tracer);
+    uint64_t counts[3] = {n.paths, n.rays + n.shadow_rays, edit_sums_rejected(t.sums)};
+    ranks_sum(counts, 3);
+    r->report->paths += counts[0];
+    r->report->rays += counts[1];
+    r->report->rejected += counts[2];
+    forget_handed(&t);
+    mem_free(t.handed);
+    tracer_destroy(t.tracer);
+    edit_sums_destroy(t.sums);
     return whole;
 }
 
 // ---- passes -----------------------------------------------------------------------------------
+
+// What rank 0 tells the others of a pass; next == end: there is none.
+struct pass {
+    uint32_t next, end;
+};
 
 static bool open_layout(struct run *r, const struct tensor *base, uint32_t next, uint32_t end) {
     const struct polynomial_range range = {
@@ -159,8 +142,9 @@ static bool open_layout(struct run *r, const struct tensor *base, uint32_t next,
     struct polynomial_report *report = r->report;
     if (!polynomial_layout_init(&r->layout, r->p, &range)) {
         report->stopped = r->p->tracer.stop && *r->p->tracer.stop;
-        return report->stopped ? false : (log_error("%s: is not of this scene and these options",
-                                                    r->options->output), false);
+        if (!report->stopped)
+            log_error("%s: is not of this scene and these options", r->options->output);
+        return false;
     }
     report->objects = r->p->plan.count;
     report->groups = r->p->groups.count;
@@ -171,13 +155,27 @@ static bool open_layout(struct run *r, const struct tensor *base, uint32_t next,
     return fit_memory(r);
 }
 
+// On rank 0, once the survey is done: the file, and to the others in how many strips tiles are cut (0:
+// there is nothing to do).
+static struct tensor_writer *create(struct run *r, bool good, uint32_t end) {
+    struct tensor_writer *w = NULL;
+    if (good) {
+        struct json *meta = polynomial_describe(r->p, r->options, r->first, end, r->quantum);
+        r->layout.tensor.meta = meta;
+        w = tensor_create(r->options->output, &r->layout.tensor);
+        json_destroy(meta);
+    }
+    uint32_t parts = w ? r->layout.sums.parts : 0;
+    ranks_broadcast(&parts, sizeof parts);
+    return w;
+}
+
 // Traces samples and writes the tensor of all so far. false after an error message, or stopped.
 static bool write_pass(struct run *r, const struct tensor *base, uint32_t next, uint32_t end) {
+    struct pass pass = {next, end};
+    ranks_broadcast(&pass, sizeof pass);
     bool whole = open_layout(r, base, next, end);
-    struct json *meta = whole ? describe(r, end) : NULL;
-    r->layout.tensor.meta = meta;
-    struct tensor_writer *w = whole ? tensor_create(r->options->output, &r->layout.tensor) : NULL;
-    json_destroy(meta);
+    struct tensor_writer *w = create(r, whole, end);
     if (w) {
         polynomial_layout_tie(&r->layout, w);
         whole = trace(r, 0, strip_count(r), next, end - next);
@@ -189,26 +187,63 @@ static bool write_pass(struct run *r, const struct tensor *base, uint32_t next, 
     return w && whole && tensor_finish(w);
 }
 
+// What the other ranks do.
+static void help(struct run *r) {
+    for (struct pass pass;;) {
+        uint32_t parts;
+        ranks_broadcast(&pass, sizeof pass);
+        if (pass.next == pass.end)
+            return;
+        const bool good = open_layout(r, NULL, pass.next, pass.end);
+        ranks_broadcast(&parts, sizeof parts);
+        r->layout.sums.parts = good ? parts : 1;
+        if (parts > 0)
+            trace(r, 0, strip_count(r), pass.next, pass.end - pass.next);
+        polynomial_layout_finish(&r->layout);
+    }
+}
+
+// Samples that the noise which is asked for needs, when `done` have left so much.
+static double samples_for(double wished, double noise, uint32_t done) {
+    const double ratio = noise >= 0 ? noise / wished : HUGE_VAL;
+    return ceil(ratio * ratio * done / BLOCK) * BLOCK;
+}
+
 // Samples of the next pass: whole blocks, and about as long as the time between checkpoints, or as
-// is left; first of all a few, to see what they cost.
-static uint32_t pass_length(const struct run *r, uint32_t done, uint32_t next, double seconds) {
+// is left, or what lacks to the noise that is asked for, up to as many as there are; first of all a few,
+// to see what they cost.
+static uint32_t pass_length(const struct run *r, uint32_t done, uint32_t next) {
     const struct polynomial_options *o = r->options;
+    const double seconds = r->report->seconds, here = next - r->first;
     const double left = o->job.seconds > 0 ? fmax(o->job.seconds - seconds, 0) : HUGE_VAL;
     const double wished = fmin(o->checkpoint > 0 ? o->checkpoint : HUGE_VAL, left);
     double n = r->end - next;
     if (wished < HUGE_VAL)
         n = fmin(n, done == 0 ? BLOCK : fmin(wished * done / seconds, 4.0 * done));
+    if (o->job.noise > 0)
+        n = fmin(n, here == 0 ? BLOCK
+                              : fmin(samples_for(o->job.noise, r->report->noise, (uint32_t)here) - here,
+                                     here));
     n = fmax(floor(n / BLOCK) * BLOCK, BLOCK);
     return n < r->end - next ? (uint32_t)n : r->end - next;
 }
 
+// Whether samples up to `next` are not enough.
+static bool go_on(struct run *r, uint32_t next) {
+    const struct job_options *o = &r->options->job;
+    if (next > r->first && o->noise > 0 &&
+        (!polynomial_noise(r->options->output, threads_of(r), &r->report->noise) ||
+         r->report->noise <= o->noise))
+        return false;
+    return next < r->end && !(next > r->first && o->seconds > 0 && r->report->seconds >= o->seconds);
+}
+
 // Passes from `next` on, each from the tensor that the one before has left.
 static bool run_passes(struct run *r, struct tensor_file *base, uint32_t next) {
-    const double most = r->options->job.seconds;
     const uint32_t from = next;
     bool done = true;
-    while (done && next < r->end && !(next > r->first && most > 0 && r->report->seconds >= most)) {
-        const uint32_t n = pass_length(r, next - from, next, r->report->seconds);
+    while (done && go_on(r, next)) {
+        const uint32_t n = pass_length(r, next - from, next);
         done = write_pass(r, base ? tensor_get(base) : NULL, next, next + n);
         next += done ? n : 0;
         r->report->seconds = time_seconds() - r->start;
@@ -241,38 +276,50 @@ static bool estimate(struct run *r) {
     return done;
 }
 
-static bool run(struct run *r) {
+// On rank 0.
+static bool resume_and_run(struct run *r) {
     const struct polynomial_options *o = r->options;
     struct tensor_file *base = NULL;
     uint32_t next = r->first;
-    if (o->tail == TAIL_GEOMETRIC && !polynomial_radius(r->p, o->bounces, r->p->radius))
+    polynomial_albedos(r->p, threads_of(r));
+    struct json *meta = polynomial_describe(r->p, o, r->first, r->end, r->quantum);
+    const bool good = !o->resume || polynomial_resume(o, meta, r->first, &base, &next);
+    json_destroy(meta);
+    return good && run_passes(r, base, next);
+}
+
+static bool run(struct run *r) {
+    const struct pass none = {0, 0};
+    if (r->options->tail == TAIL_GEOMETRIC &&
+        !polynomial_radius(r->p, r->options->bounces, r->p->radius))
         return false;
-    if (o->dry_run)
+    if (r->options->dry_run)
         return estimate(r);
     r->quantum = polynomial_quantum(r->p);
-    if (o->resume && !polynomial_resume(r->p, o, r->first, r->quantum, &base, &next))
-        return false;
-    find_albedos(r);
-    if (next < r->end)
-        return run_passes(r, base, next);
-    tensor_close(base);
-    r->report->samples = next - r->first;
-    return true;
+    if (ranks_index() > 0) {
+        help(r);
+        return true;
+    }
+    const bool done = resume_and_run(r);
+    ranks_broadcast((void *)(uintptr_t)&none, sizeof none);
+    return done;
 }
 
 bool precompute_polynomial(const struct polynomial_options *o, struct polynomial_report *report) {
     struct polynomial p;
-    *report = (struct polynomial_report){0};
+    *report = (struct polynomial_report){.noise = -1};
     if (!polynomial_open(&p, o))
         return false;
     const struct render_options *render = &p.job.render;
-    struct run r = {.start = time_seconds(), .p = &p, .options = o, .report = report, .first = (uint32_t)p.job.film.first,
-                    .end = (uint32_t)(render->end + 1) / 2 * 2};
+    struct run r = {.start = time_seconds(), .p = &p, .options = o, .report = report,
+                    .first = (uint32_t)p.job.film.first, .end = (uint32_t)(render->end + 1) / 2 * 2};
     const bool done = run(&r);
     if (report->stopped && report->samples > 0)
         log_warn("stopped: %s has %" PRIu64 " samples", o->output, report->samples);
     else if (report->stopped)
         log_error("stopped before the tensor was whole: %s is not written", o->output);
+    if (done && o->job.noise > 0 && !(report->noise <= o->job.noise))
+        report->stopped = true;
     polynomial_close(&p);
-    return done;
+    return done && !report->stopped;
 }

@@ -56,10 +56,11 @@ struct polynomial_report {
     uint64_t file_bytes, sums_bytes; // of the tensor; of the sums of tiles that are worked on
     uint64_t samples, paths, rays, rejected;
     double seconds;                  // spent tracing; dry run: expected
-    bool stopped;
+    double noise;                    // of the picture as it is; negative: not asked for
+    bool stopped;                    // before the samples that were asked for, or short of their noise
 };
 
-// false after an error message.
+// All ranks together (driver/ranks.h); only rank 0 writes and reports. false after an error message.
 bool precompute_polynomial(const struct polynomial_options *o, struct polynomial_report *report);
 
 // ---- its parts, as tests need them --------------------------------------------------------------
@@ -68,6 +69,7 @@ bool precompute_polynomial(const struct polynomial_options *o, struct polynomial
 struct polynomial {
     struct job job;
     struct edit_plan plan;
+    double *(*albedos)[FORM_TERMS]; // polynomial_albedos; or NULL
     struct edit_classes classes;
     struct edit_groups groups;
     struct symbolic response, survey;

@@ -14,6 +14,36 @@ void ranks_finish(void);
 int ranks_index(void);
 int ranks_count(void);
 
+// ---- any work in units --------------------------------------------------------------------------
+
+// Numbers that a part of a unit leaves.
+struct ranks_part {
+    const double *values;
+    size_t count;
+};
+
+struct ranks_work {
+    uint32_t units, most_parts; // of a unit
+    // Works on a unit. Elsewhere than on rank 0 it leaves parts to be sent there: they stay as they are
+    // until the next call. false: given up, and so is all work.
+    bool (*work)(void *user, uint32_t unit, struct ranks_part *parts, uint32_t *count);
+    // Rank 0 gets a part from another rank.
+    void (*take)(void *user, uint32_t unit, uint32_t part, const double *values, size_t count);
+    void (*progress)(void *user, uint32_t units); // rank 0: so many are done
+    void *user;
+};
+
+// Works on all units with the help of all ranks, which must all call it with the same work. On rank 0:
+// whether all were done.
+bool ranks_share(const struct ranks_work *w);
+bool ranks_work_alone(const struct ranks_work *w); // the same by one rank
+// Gives all ranks what rank 0 has.
+void ranks_broadcast(void *data, size_t size);
+// Leaves the sums over all ranks on rank 0.
+void ranks_sum(uint64_t *values, size_t count);
+
+// ---- pictures -----------------------------------------------------------------------------------
+
 // What render() does, with the help of all ranks, which must all call it with the same options. On
 // other ranks than 0 the film stays empty and the result says nothing.
 void ranks_render(struct film *film, const struct render_options *options,

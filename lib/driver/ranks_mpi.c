@@ -10,11 +10,13 @@
 #include "base/mem.h"
 #include "base/thread.h"
 #include "driver/limits.h"
+#include "driver/rank_messages.h"
 
 enum { TAG_UNIT, TAG_SUMS, TAG_COUNTS };
 enum { UNITS_AHEAD = 2 };   // a rank holds, so that it need not wait for the next one
 enum { BLOCKS_AHEAD = 2 };  // that may be worked on at a time
 enum { UNITS_PER_RANK = 8 }; // of a block, about
+enum { MOST_BYTES = 1 << 30 }; // of a message
 enum { NAP = 200 };         // microseconds between looks for messages
 
 // Samples [first, first + count) of tiles [tile, tile + tiles). count == 0: there is no more.
@@ -46,6 +48,53 @@ int ranks_index(void) {
 
 int ranks_count(void) {
     return rank_count;
+}
+
+// ---- messages -----------------------------------------------------------------------------------
+
+// Bytes of the next piece of a message.
+static int piece(size_t size) {
+    return size < MOST_BYTES ? (int)size : MOST_BYTES;
+}
+
+void rank_send(int rank, int tag, const void *data, size_t size) {
+    const char *at = data;
+    for (int n; size > 0; at += n, size -= (size_t)n) {
+        n = piece(size);
+        MPI_Send(at, n, MPI_BYTE, rank, tag, MPI_COMM_WORLD);
+    }
+}
+
+void rank_receive(int rank, int tag, void *data, size_t size) {
+    char *at = data;
+    for (int n; size > 0; at += n, size -= (size_t)n) {
+        n = piece(size);
+        MPI_Recv(at, n, MPI_BYTE, rank, tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    }
+}
+
+bool rank_waits(int tag, int *rank) {
+    MPI_Status status;
+    int there;
+    MPI_Iprobe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &there, &status);
+    *rank = there ? status.MPI_SOURCE : 0;
+    return there;
+}
+
+void ranks_broadcast(void *data, size_t size) {
+    char *at = data;
+    for (int n; rank_count > 1 && size > 0; at += n, size -= (size_t)n) {
+        n = piece(size);
+        MPI_Bcast(at, n, MPI_BYTE, 0, MPI_COMM_WORLD);
+    }
+}
+
+void ranks_sum(uint64_t *values, size_t count) {
+    uint64_t *own = mem_array(count, sizeof *own);
+    memcpy(own, values, count * sizeof *own);
+    if (rank_count > 1)
+        MPI_Reduce(own, values, (int)count, MPI_UINT64_T, MPI_SUM, 0, MPI_COMM_WORLD);
+    mem_free(own);
 }
 
 // ---- work, on every rank ------------------------------------------------------------------------

@@ -3,8 +3,10 @@
 
 #include <assert.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "base/mem.h"
 #include "sink/ignore.h"
 
@@ -34,6 +36,7 @@ struct edit_view {
     struct sink sink; // first
     struct edit_sums *sums;
     const struct seen_tile *tile;
+    uint32_t strip;
     struct sink_area wanted;
     double *cells;          // the fixed picture's [pixel][half][3], then those of the objects
     size_t count, capacity; // of cells
@@ -92,6 +95,7 @@ static void view_open(struct sink *s, uint32_t tile, struct sink_area *wanted) {
     struct edit_view *v = (void *)s;
     const struct edit_sums_options *o = &v->sums->options;
     v->tile = &o->seen->tiles[tile / o->parts];
+    v->strip = tile;
     v->wanted = *wanted = strip(o, &v->sums->grid, tile);
     mem_grow(&v->start, &v->start_capacity, v->tile->count, sizeof *v->start);
     v->count = lay_out(o, v->tile, wanted, v->start);
@@ -284,8 +288,18 @@ static void store_fixed(const struct edit_view *v, int x, int y) {
     }
 }
 
+static void hand_over(struct edit_view *v) {
+    v->sums->options.handed[v->strip] = (struct edit_sums_cells){v->cells, v->count};
+    v->cells = NULL;
+    v->capacity = 0;
+}
+
 static void view_close(struct sink *s) {
     struct edit_view *v = (void *)s;
+    if (v->sums->options.handed) {
+        hand_over(v);
+        return;
+    }
     for (int y = v->wanted.y0; y < v->wanted.y1; y++)
         for (int x = v->wanted.x0; x < v->wanted.x1; x++)
             store_fixed(v, x, y);
@@ -329,6 +343,21 @@ void edit_sums_destroy(struct edit_sums *e) {
 
 uint32_t edit_sums_tile_count(const struct edit_sums *e) {
     return tile_grid_count(&e->grid) * e->options.parts;
+}
+
+void edit_sums_take(struct edit_sums *e, uint32_t strip, const double *values, size_t count) {
+    struct sink *s = edit_sums_sink(e);
+    struct edit_view *v = (void *)s;
+    struct sink_area wanted;
+    view_open(s, strip, &wanted);
+    if (v->count != count) {
+        log_error("a process that helps has %zu sums of a strip, expected %zu: it sees another scene",
+                  count, v->count);
+        abort();
+    }
+    memcpy(v->cells, values, count * sizeof *values);
+    view_close(s);
+    view_destroy(s);
 }
 
 uint64_t edit_sums_rejected(const struct edit_sums *e) {

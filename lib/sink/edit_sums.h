@@ -28,6 +28,12 @@ struct edit_sums_object {
     const struct tensor_block *base[EDIT_MOST_TERMS];
 };
 
+// Cells of a strip, as they are summed.
+struct edit_sums_cells {
+    double *values; // mem_free them
+    size_t count;
+};
+
 struct edit_sums_options {
     struct sink_area area;
     int width, height;               // of the whole picture
@@ -43,6 +49,7 @@ struct edit_sums_options {
     float *fixed;                    // 3 planes of the whole picture
     double *fixed_sums;              // the same as sums, or NULL
     const double *fixed_base;        // of the earlier tensor, or NULL
+    struct edit_sums_cells *handed;  // by strip: where sums go instead of the arrays; or NULL
 };
 
 struct edit_sums;
@@ -53,6 +60,8 @@ void edit_sums_destroy(struct edit_sums *e);
 // Tiles as a tracer counts them: strips.
 uint32_t edit_sums_tile_count(const struct edit_sums *e);
 struct sink *edit_sums_sink(void *edit_sums);
+// Stores the cells of a strip that were handed over by another process with the same options.
+void edit_sums_take(struct edit_sums *e, uint32_t strip, const double *values, size_t count);
 uint64_t edit_sums_rejected(const struct edit_sums *e); // samples that were not finite
 
 // Bytes of memory that the largest strip needs.

@@ -8,6 +8,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "transport/sample_ranges.h"
+#include "transport/tensor_meaning.h"
 #include "transport/tensor_parts.h"
 
 enum { ABSENT = UINT32_MAX };
@@ -43,53 +44,9 @@ static bool fail(const struct remake *r, size_t source, const char *what) {
     return false;
 }
 
-static bool same_value(const struct json *a, const struct json *b) {
-    if (!a || !b)
-        return a == b;
-    char *x = json_to_text(a), *y = json_to_text(b);
-    const bool same = strcmp(x, y) == 0;
-    mem_free(x);
-    mem_free(y);
-    return same;
-}
-
-// What of the meaning of coefficients differs; NULL: nothing. Samples and how they were made may.
-static const char *other_meaning(const struct json *a, const struct json *b) {
-    static const char *const free_keys[] = {"samples", "seed", "command", "program", "scene", "blocks",
-                                            "merged", "packets", "ranges", "range", "lights",
-                                            NULL};
-    for (int side = 0; side < 2; side++) {
-        const struct json *x = side ? b : a, *y = side ? a : b;
-        for (size_t i = 0; i < json_count(x); i++) {
-            const char *key = json_key(x, i);
-            bool free = false;
-            for (int k = 0; free_keys[k]; k++)
-                free = free || strcmp(free_keys[k], key) == 0;
-            if (!free && !same_value(json_get(x, key), json_get(y, key)))
-                return key;
-        }
-    }
-    return NULL;
-}
-
-static bool same_axis(const struct tensor_axis *a, const struct tensor_axis *b) {
-    return strcmp(a->name, b->name) == 0 && a->basis == b->basis && a->bins == b->bins &&
-           !a->edges == !b->edges &&
-           (!a->edges || memcmp(a->edges, b->edges, tensor_edges(a) * sizeof *a->edges) == 0);
-}
-
-static bool same_block(const struct tensor_block *a, const struct tensor_block *b) {
-    bool same = strcmp(a->object, b->object) == 0 && strcmp(a->term, b->term) == 0 &&
-                a->axis_count == b->axis_count && a->groups == b->groups &&
-                a->coefficients == b->coefficients && !a->view == !b->view;
-    for (uint32_t i = 0; i < a->axis_count && same; i++)
-        same = same_axis(&a->axes[i], &b->axes[i]);
-    return same;
-}
-
 static bool same_shape(const struct remake *r, size_t source) {
     const struct tensor *a = r->sources[0].tensor, *b = r->sources[source].tensor;
-    const char *other = other_meaning(a->meta, b->meta);
+    const char *other = tensor_other_meaning(a->meta, b->meta);
     if (other) {
         log_error("%s: is not of the same scene, objects and size as the first tensor: another \"%s\"",
                   r->options->paths[source], other);
@@ -99,7 +56,7 @@ static bool same_shape(const struct remake *r, size_t source) {
         !a->fixed != !b->fixed)
         return fail(r, source, "is not of the same scene, objects and size as the first tensor");
     for (uint32_t i = 0; i < a->block_count; i++)
-        if (!same_block(&a->blocks[i], &b->blocks[i]) ||
+        if (!tensor_same_block(&a->blocks[i], &b->blocks[i]) ||
             (!r->summed && !a->blocks[i].halves != !b->blocks[i].halves))
             return fail(r, source, "has other blocks than the first tensor");
     return true;
@@ -111,7 +68,7 @@ static bool are_ranges(const struct remake *r) {
     for (size_t s = 0; s < r->options->count && are; s++) {
         const struct tensor *t = r->sources[s].tensor;
         are = tensor_has_sums(t) &&
-              same_value(json_get(t->meta, "seed"), json_get(r->sources[0].tensor->meta, "seed"));
+              tensor_same_value(json_get(t->meta, "seed"), json_get(r->sources[0].tensor->meta, "seed"));
     }
     return are;
 }

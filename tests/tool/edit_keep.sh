@@ -125,10 +125,27 @@ same whole extended
 expect 1 "$relume" precompute edit "$scene" -o "$folder/extended.safetensors" --bounces 2 --spp 999 \
     --resume
 contains "$err" "other options"
+for other in "--max-depth 5" "--crop 0,0,9,9" "--seed 3" "--sampler independent" "--group g=floor,ball"; do
+    # shellcheck disable=SC2086
+    expect 1 "$relume" precompute edit "$scene" -o "$folder/extended.safetensors" "${options[@]}" \
+        --spp 999 --resume $other
+    contains "$err" "other options"
+done
 expect 1 "$relume" precompute edit "$scene" -o "$folder/whole.safetensors" "${options[@]}" --spp 999 \
     --resume
 contains "$err" "not kept its sums"
 same whole extended
+
+# Noise that is asked for, reached or not.
+noise=$("$relume" edit "$folder/whole.safetensors" -o "$folder/x.exr" --quiet --json --no-device |
+    python3 -c 'import json, sys; print(json.load(sys.stdin)["noise"])')
+tensor noise --noise "$noise" --json
+python3 -c 'import json, sys
+r, noise = json.loads(sys.argv[1]), float(sys.argv[2])
+sys.exit(not (r["noise"] <= noise and r["samples"] % 64 == 0 and 64 < r["samples"] < 2048))' "$out" "$noise" ||
+    fail "--noise $noise: $out"
+expect 3 "$relume" precompute edit "$scene" -o "$folder/noise.safetensors" "${options[@]}" --spp 128 \
+    --noise 1e-4
 
 # A clock; the tensor that is there can be edited.
 expect 0 "$relume" precompute edit "$scene" -o "$folder/time.safetensors" "${options[@]}" --spp 1000000 \

@@ -22,7 +22,7 @@ cat >"$folder/room.xml" <<END
 <film type="hdrfilm"><integer name="width" value="150"/><integer name="height" value="70"/>
 <rfilter type="gaussian"/></film></sensor>
 <emitter type="constant"/><shape type="sphere"><point name="center" x="0" y="0.6" z="0"/>
-<float name="radius" value="0.6"/></shape></scene>
+<float name="radius" value="0.6"/><bsdf type="diffuse" id="ball"/></shape></scene>
 END
 scene=$folder/room.xml
 
@@ -48,6 +48,37 @@ ranks 3 resumed --spp 150 --variance --resume
 same alone resumed
 ranks 2 noise --noise 0.02 --json
 near "$out" samples 64
+
+# Tensors for editing with all bounces: whole, in passes, resumed; others are refused.
+tensor() {
+    local n=$1 name=$2
+    shift 2
+    expect 0 mpirun --oversubscribe -n "$n" "$relume" precompute edit "$scene" --edit ball \
+        -o "$folder/$name.safetensors" --bounces 2 --series 8 --size 75x35 --threads 1 --quiet "$@"
+}
+# The bytes of values, halves, sums: what follows the header.
+data() {
+    python3 -c 'import struct, sys, zlib
+d = open(sys.argv[1], "rb").read()
+print(zlib.crc32(d[8 + struct.unpack("<Q", d[:8])[0]:]))' "$folder/$1.safetensors"
+}
+tensor 1 one --spp 192 --checkpoint 100
+for n in 2 3; do
+    tensor "$n" many --spp 192 --checkpoint 100
+    [ "$(data one)" = "$(data many)" ] || fail "$n processes make another tensor"
+    tensor "$n" passes --spp 64 --resume
+    tensor "$n" passes --spp 192 --resume --checkpoint 0.01
+    [ "$(data one)" = "$(data passes)" ] || fail "$n processes make another tensor when they resume"
+    rm "$folder/passes.safetensors"
+done
+tensor 1 one --noise 0.05
+tensor 2 many --noise 0.05 --json
+[ "$(data one)" = "$(data many)" ] || fail "another tensor with --noise"
+python3 -c 'import json, sys; sys.exit(not 0 < json.loads(sys.argv[1])["noise"] <= 0.05)' "$out" ||
+    fail "--noise: $out"
+expect 2 mpirun --oversubscribe -n 2 "$relume" precompute relight "$scene" -o "$folder/x"
+contains "$err" "expected one process"
+
 expect 1 mpirun --oversubscribe -n 2 "$relume" render "$folder/none.xml" -o "$folder/x.exr"
 contains "$err" "none.xml"
 finish
