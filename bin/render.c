@@ -35,6 +35,7 @@ static const struct option_argument arguments[] = {
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output), .argument = "OUT.exr",
      .help = "the picture to write", .required = true},
+    OPTION_GROUP("When to stop"),
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
      .help = "stop after N samples per pixel; 0: what the scene asks for", .def = "0"},
     {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "SECONDS", .min = 0,
@@ -43,12 +44,10 @@ static const struct option_spec options[] = {
      .max = 1e3,
      .help = "stop when the relative standard error of the pixels (root mean square)\n"
              "is no more than X; looked at every 64 samples. Implies --variance"},
-    {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
-     .help = "render samples A to B-1 only, multiples of 64, for `relume merge`;\n"
-             "keeps a journal"},
     {.name = "adaptive", .type = OPTION_FLAG, .offset = AT(adaptive),
      .help = "take more samples where a pilot of 16 finds noise, fewer elsewhere, the\n"
              "same number in all; without bias. Layer `samples` says where"},
+    OPTION_GROUP("To lose no work, and to share it"),
     {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
      .min = 0, .max = 1e9,
      .help = "every so often write what is done to OUT.exr.journal"},
@@ -57,6 +56,10 @@ static const struct option_spec options[] = {
              "before; keeps the journal"},
     {.name = "preview", .type = OPTION_SECONDS, .offset = AT(preview), .argument = "SECONDS",
      .min = 0, .max = 1e9, .help = "every so often write the picture so far"},
+    {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
+     .help = "render samples A to B-1 only, multiples of 64, for `relume merge`;\n"
+             "keeps a journal"},
+    OPTION_GROUP("In place of what the scene says"),
     OPTION_SIZE(struct values, size),
     OPTION_CROP(struct values, crop),
     OPTION_RECEIVER(struct values, receiver),
@@ -69,6 +72,9 @@ static const struct option_spec options[] = {
      .help = "most that one piece of indirect light may bring to a sample, as the mean of\n"
              "R, G and B; 0: no limit. Cuts off fireflies and with them light: how much\n"
              "is always said, and layer `clamped` shows where"},
+    OPTION_DEFINE(struct values, defines),
+    OPTION_LENIENT(struct values, lenient),
+    OPTION_GROUP("Layers"),
     {.name = "aov", .type = OPTION_TEXT, .offset = AT(aovs), .argument = "LIST",
      .help = "layers of what is seen first: albedo,N,Ng,Z,P,uv,shape,instance"},
     {.name = "cryptomatte", .type = OPTION_TEXT, .offset = AT(cryptomatte), .argument = "LIST",
@@ -80,12 +86,12 @@ static const struct option_spec options[] = {
      .help = "write a layer per emitter, or per `group` name"},
     {.name = "paths", .type = OPTION_FLAG, .offset = AT(paths),
      .help = "write direct/indirect x diffuse/glossy/specular layers"},
+    OPTION_GROUP("The file"),
     {.name = "colour-space", .type = OPTION_CHOICE, .offset = AT(space), .argument = "NAME",
-     .help = "primaries of the picture: rec709, rec2020, acescg, aces2065-1", .def = "rec709",
+     .help = "primaries of the picture", .def = "rec709",
      .choices = image_space_names},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
-    OPTION_DEFINE(struct values, defines),
-    OPTION_LENIENT(struct values, lenient),
+    OPTION_GROUP("Running"),
     OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),
     OPTION_JSON(struct values, json),
@@ -155,12 +161,10 @@ static int run_job(const struct values *v, const char *command, const struct sce
     ranks_start();
     const struct job_options job_options = {
         .scene = v->scene, .spp = v->spp, .receiver = v->receiver,
-                .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]},
-        .max_depth = v->max_depth, .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs, .cryptomatte = v->cryptomatte,
-        .variance = v->variance, .light_groups = v->light_groups, .paths = v->paths,
-        .adaptive = v->adaptive,
-        .clamp = v->clamp,
-        .samples = {samples[0], samples[1]}, .seconds = v->seconds, .noise = v->noise,
+        .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth,
+        .seed = (uint32_t)v->seed, .threads = v->threads, .aovs = v->aovs,
+        .cryptomatte = v->cryptomatte, .variance = v->variance, .light_groups = v->light_groups,
+        .paths = v->paths, .adaptive = v->adaptive, .clamp = v->clamp, .samples = {samples[0], samples[1]}, .seconds = v->seconds, .noise = v->noise,
         .stop = stop_on_signals(), .progress = between_passes, .user = &listener,
         .reading = {.defines = defines, .define_count = v->defines.count, .lenient = v->lenient,
                     .integrator = v->integrator, .sampler = v->sampler, .width = v->size[0],

@@ -128,6 +128,7 @@ static bool parse_value(const struct option_spec *o, const char *text, void *val
     case OPTION_CHOICE: return parse_choice(o, text, value);
     case OPTION_INTS: return parse_ints(o, text, value);
     case OPTION_TEXTS: append(value, text); return true;
+    case OPTION_HEADING: break;
     }
     return false;
 }
@@ -138,9 +139,10 @@ static void report_unknown(const struct option_table *table, const char *text) {
     const char *typed = name + strspn(name, "-"), *nearest = NULL;
     int best = 3 + (int)strlen(typed) / 3;
     for (size_t i = 0; i < option_count(table); i++) {
-        const int d = edit_distance(typed, table->options[i].name);
-        if (d < best)
-            best = d, nearest = table->options[i].name;
+        const struct option_spec *o = &table->options[i];
+        const int d = edit_distance(typed, o->name);
+        if (d < best && o->type != OPTION_HEADING)
+            best = d, nearest = o->name;
     }
     if (nearest)
         log_error("unknown option '%s'; the nearest is --%s (see --help)", name, nearest);
@@ -170,7 +172,9 @@ static void describe(const struct option_table *table, char *letters, struct opt
     for (size_t i = 0; i < n; i++) {
         const struct option_spec *o = &table->options[i];
         const bool takes = o->type != OPTION_FLAG;
-        longs[i] = (struct option){o->name, takes ? required_argument : no_argument, NULL,
+        if (o->type == OPTION_HEADING)
+            continue;
+        *longs++ = (struct option){o->name, takes ? required_argument : no_argument, NULL,
                                    FIRST_LONG + (int)i};
         if (o->letter)
             *letters++ = o->letter;
@@ -179,8 +183,8 @@ static void describe(const struct option_table *table, char *letters, struct opt
     }
     *letters++ = 'h';
     *letters = '\0';
-    longs[n] = (struct option){"help", no_argument, NULL, 'h'};
-    longs[n + 1] = (struct option){0};
+    longs[0] = (struct option){"help", no_argument, NULL, 'h'};
+    longs[1] = (struct option){0};
 }
 
 static enum options_result parse_options(const struct option_table *table, int argc, char **argv,

@@ -19,6 +19,7 @@ enum option_type {
     OPTION_CHOICE,   // int: index into choices
     OPTION_INTS,     // int[values], separated by ',' or 'x': 640x480, 0,0,16,16
     OPTION_TEXTS,    // struct option_list: may be repeated, each adds one text
+    OPTION_HEADING,  // no option: --help prints the name above those that follow
 };
 
 // Texts of an option or argument that may be repeated; options_finish frees the list.
@@ -57,6 +58,7 @@ struct option_table {
 };
 
 #define OPTION_END {.name = NULL}
+#define OPTION_GROUP(heading) {.name = heading, .type = OPTION_HEADING}
 
 // The three that every subcommand which computes something has.
 #define OPTION_THREADS(values, member)                                                             \

@@ -24,6 +24,10 @@ static void print_entry(const char *term, const char *help, const char *def) {
 
 static void print_option(const struct option_spec *o) {
     char term[96];
+    if (o->type == OPTION_HEADING) {
+        printf("\n%s:\n", o->name);
+        return;
+    }
     const char letter[] = {'-', o->letter ? o->letter : ' ', ',', ' ', '\0'};
     snprintf(term, sizeof term, "%s--%s%s%s", o->letter ? letter : "    ", o->name,
              o->argument ? " " : "", o->argument ? o->argument : "");

@@ -23,6 +23,7 @@ static const struct option_spec specs[] = {
     {.name = "flag", .letter = 'f', .type = OPTION_FLAG, .offset = AT(flag), .help = "a flag"},
     {.name = "number", .letter = 'n', .type = OPTION_INT, .offset = AT(number), .argument = "N",
      .help = "a number", .def = "7", .min = 1, .max = 10},
+    OPTION_GROUP("Sizes"), // in the midst of the others, and no option itself
     {.name = "size", .type = OPTION_INTS, .offset = AT(size), .argument = "WxH", .values = 2,
      .min = 1, .max = 65536, .help = "a size"},
     {.name = "colour", .type = OPTION_CHOICE, .offset = AT(choice), .argument = "NAME",
@@ -87,6 +88,7 @@ static void mistakes_are_named(void) {
         {"a --flagg", "the nearest is --flag"},
         {"a --zzzzzzzzzz", "unknown option '--zzzzzzzzzz'"},
         {"a -z", "unknown option '-z'"},
+        {"a --Sizes", "the nearest is --size"},
         {"a --number", "--number: found nothing"},
         {"a -n", "--number: found nothing"},
         {"a --flag=1", "--flag takes no value"},
