@@ -26,60 +26,68 @@ static const struct option_argument arguments[] = {
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output),
      .argument = "T.safetensors", .help = "the tensor to write", .required = true},
+    OPTION_GROUP("precompute relight"),
     {.name = "basis", .type = OPTION_TEXT, .offset = AT(basis), .argument = "NAME", .def = "lights",
      .help = "lights: a coefficient per emitter or `group` name;\n"
              "pixels:WxH: per cell of a latitude-longitude grid of directions;\n"
              "sh:N: spherical harmonics to order N;\n"
              "haar:WxH, daub4:WxH: wavelets over the cells"},
-    {.name = "direct", .type = OPTION_FLAG, .offset = AT(direct),
-     .help = "edit: direct light only, by triangles of the sky"},
-    {.name = "unshadowed", .type = OPTION_FLAG, .offset = AT(unshadowed),
-     .help = "edit: nothing hides the sky, to see what shadows do"},
+    OPTION_GROUP("precompute edit"),
     {.name = "edit", .type = OPTION_TEXTS, .offset = AT(edit), .argument = "NAME",
-     .help = "edit: make the material, or that of the shape, of this id editable, too"},
+     .help = "make the material, or that of the shape, of this id editable, too"},
     {.name = "bounces", .type = OPTION_INT, .offset = AT(bounces), .argument = "N", .min = 1,
      .max = EDIT_MOST_BOUNCES, .def = "4",
-     .help = "edit: how often light scatters from materials that can be edited"},
+     .help = "how often light scatters from materials that can be edited"},
     {.name = "series", .type = OPTION_TEXT, .offset = AT(series), .argument = "J,J2,1,...",
-     .def = "64", .help = "edit: most bins of a curve where the eye sees it, at the second hop, ...;\n"
+     .def = "64", .help = "most bins of a curve where the eye sees it, at the second hop, ...;\n"
      "1, where none is given: an albedo"},
     {.name = "group", .type = OPTION_TEXTS, .offset = AT(group), .argument = "NAME=OBJ,OBJ,...",
-     .help = "edit: these objects have one mean albedo at later hops, since tensors grow with\n"
-             "products of albedos; N: all but the N - 1 that pass most light on are a group"},
+     .help = "these have one mean albedo at later hops, since tensors grow with products\n"
+             "of albedos; N: all but the N - 1 that pass most light on are a group"},
     {.name = "tail", .type = OPTION_TEXT, .offset = AT(tail), .argument = "NAME", .def = "frozen",
-     .help = "edit: light of more bounces meets the materials as they are (frozen),\n"
+     .help = "light of more bounces meets the materials as they are (frozen),\n"
      "is left out (none), or comes from the ratio of the last two bounces (geometric)"},
     {.name = "later", .type = OPTION_TEXT, .offset = AT(later), .argument = "NAME",
-     .def = "kept", .help = "edit: at later hops edits change how much a surface reflects, not where to, which\n"
+     .def = "kept", .help = "at later hops edits change how much a surface reflects, not where to, which\n"
      "is as it was (kept), or Lambertian (lambertian)"},
+    {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
+     .help = "" BUDGET_HELP},
+    OPTION_GROUP("precompute edit --direct"),
+    {.name = "direct", .type = OPTION_FLAG, .offset = AT(direct),
+     .help = "direct light only, by triangles of the sky"},
+    {.name = "unshadowed", .type = OPTION_FLAG, .offset = AT(unshadowed),
+     .help = "nothing hides the sky, to see what shadows do"},
     {.name = "lights", .type = OPTION_INT, .offset = AT(lights), .argument = "N", .min = 8,
-     .max = 1000000, .def = "4000", .help = "edit: triangles of the sky; 400 for a preview"},
+     .max = 1000000, .def = "4000", .help = "triangles of the sky; 400 for a preview"},
     {.name = "light-samples", .type = OPTION_INT, .offset = AT(light_samples), .argument = "N",
      .min = 2, .max = 65536, .def = "8",
-     .help = "edit: samples of other lights, and of what is not editable, for each of --spp"},
+     .help = "samples of other lights, and of what is not editable, for each of --spp"},
     {.name = "packets", .type = OPTION_CHOICE, .offset = AT(packets), .argument = "NAME",
      .def = "auto", .choices = precompute_packets,
-     .help = "edit: shadow rays of 16 pixels, or towards 16 lights, at once; auto: measured"},
+     .help = "shadow rays at once: of 16 pixels, towards 16 lights, or what a measurement says"},
+    OPTION_GROUP("When to stop"),
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
      .help = "samples per pixel; 0: what the scene asks for; edit --direct:\n"
              "positions in a pixel, 0: 16",
      .def = "0"},
-    {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
-     .help = "edit: samples A to B-1 only, multiples of 64, for `relume tensor merge`;\n"
-             "--direct: triangles in the order in which the sky is split: 0:400,\n"
-             "then 400:4000, which refines it"},
     {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "SECONDS", .min = 0,
      .max = 1e9, .help = "edit: stop after so long: 90, 90s, 15m, 2h"},
     {.name = "noise", .type = OPTION_NUMBER, .offset = AT(noise), .argument = "X", .min = 0,
      .max = 1e6, .def = "0", .help = "edit: stop when the relative error of the picture as it is is no more"},
+    OPTION_GROUP("To lose no work, and to share it (precompute edit)"),
     {.name = "checkpoint", .type = OPTION_SECONDS, .offset = AT(checkpoint), .argument = "SECONDS",
-     .min = 0, .max = 1e9, .help = "edit: every so often write the tensor of the samples so far, which can\n"
+     .min = 0, .max = 1e9, .help = "every so often write the tensor of the samples so far, which can\n"
      "be edited already"},
     {.name = "resume", .type = OPTION_FLAG, .offset = AT(resume),
-     .help = "edit: go on from the output if it is there, also to more samples than\n"
-             "before. These five keep exact sums in the tensor, which make it three\n"
-             "times as large; `relume tensor requantise` drops them. --direct:\n"
+     .help = "go on from the output if it is there, also to more samples than\n"
+             "before. These three, --time and --noise keep exact sums in the tensor, three\n"
+             "times its size; `relume tensor requantise` drops them. --direct:\n"
              "work is kept in T.part, even when killed, and gone on with"},
+    {.name = "samples", .type = OPTION_TEXT, .offset = AT(samples), .argument = "A:B",
+     .help = "samples A to B-1 only, multiples of 64, for `relume tensor merge`;\n"
+             "--direct: triangles in the order in which the sky is split: 0:400,\n"
+             "then 400:4000, which refines it"},
+    OPTION_GROUP("In place of what the scene says"),
     OPTION_SIZE(struct precompute_values, size),
     OPTION_CROP(struct precompute_values, crop),
     OPTION_RECEIVER(struct precompute_values, receiver),
@@ -87,16 +95,16 @@ static const struct option_spec options[] = {
     OPTION_SAMPLER(struct precompute_values, sampler),
     OPTION_MAX_DEPTH(struct precompute_values, max_depth),
     OPTION_SEED(struct precompute_values, seed),
+    OPTION_DEFINE(struct precompute_values, defines),
+    OPTION_LENIENT(struct precompute_values, lenient),
+    OPTION_GROUP("Storage"),
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
      .help = "store 16 bits (bfloat16) a coefficient"},
-    {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
-     .help = "edit: " BUDGET_HELP},
     {.name = "memory", .type = OPTION_NUMBER, .offset = AT(memory), .argument = "GB", .min = 0,
      .max = 1e6, .def = "0", .help = "most memory for sums; 0: half of what there is"},
     {.name = "dry-run", .type = OPTION_FLAG, .offset = AT(dry_run),
      .help = "only say how many bytes and hours it would take"},
-    OPTION_DEFINE(struct precompute_values, defines),
-    OPTION_LENIENT(struct precompute_values, lenient),
+    OPTION_GROUP("Running"),
     OPTION_THREADS(struct precompute_values, threads),
     OPTION_QUIET(struct precompute_values, quiet),
     OPTION_JSON(struct precompute_values, json),
