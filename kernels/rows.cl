@@ -10,13 +10,12 @@
 
 #define ADD(number, name)                                                                          \
     case number:                                                                                   \
-        for (uint v = 0; v < TILE_ROW; v++)                                                        \
-            sum[v] += weight[v / TILE_VECTORS] * name(p, v);                                       \
+        name(p, weight, sum);                                                                      \
         break;
 
 // sum += weight * row
-inline void add_row(global const uchar *tile, uint entry, global const float *weight,
-                    private float16 *sum) {
+ROW_INLINE void add_row(global const uchar *tile, uint entry, global const float *weight,
+                        float16 *sum) {
     global const uchar *p = tile + ROW_OFFSET(entry);
     switch (ROW_WAY(entry)) {
         ROW_WAYS(ADD)
@@ -28,14 +27,14 @@ kernel void dot_rows(global const uchar *t, global const uint *entry, global con
                      global float16 *out, uint first) {
     const size_t tile = get_global_id(0);
     float16 sum[TILE_ROW];
-    for (uint v = 0; v < TILE_ROW; v++)
+    _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++)
         sum[v] = 0;
     t += start[chunk + tile] - start[chunk];
     entry += (chunk + tile) * coefficients;
     for (uint c = 0; c < coefficients; c++, weight += TILE_CHANNELS)
         add_row(t, entry[c], weight, sum);
     out += (first + tile) * TILE_ROW;
-    for (uint v = 0; v < TILE_ROW; v++)
+    _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++)
         out[v] = sum[v];
 }
 
@@ -46,13 +45,13 @@ kernel void add_terms_rows(global const uchar *t, global const uint *entry,
     const size_t tile = get_global_id(0);
     float16 sum[TILE_ROW];
     out += (first + tile) * TILE_ROW;
-    for (uint v = 0; v < TILE_ROW; v++)
+    _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++)
         sum[v] = out[v];
     t += start[chunk + tile] - start[chunk];
     entry += (chunk + tile) * coefficients;
     for (uint k = 0; k < terms; k++, weight += TILE_CHANNELS)
         add_row(t, entry[term[k]], weight, sum);
-    for (uint v = 0; v < TILE_ROW; v++)
+    _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++)
         out[v] = sum[v];
 }
 
@@ -63,13 +62,13 @@ kernel void contract_rows(global const uchar *t, global const uint *entry,
     const size_t tile = get_global_id(0) / reduced;
     const uint r = get_global_id(0) % reduced;
     float16 sum[TILE_ROW];
-    for (uint v = 0; v < TILE_ROW; v++)
+    _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++)
         sum[v] = 0;
     t += start[chunk + first + tile] - start[chunk];
     entry += (chunk + first + tile) * coefficients;
     for (uint i = begin[r]; i < begin[r + 1]; i++)
         add_row(t, entry[index[i]], weight + (size_t)i * TILE_CHANNELS, sum);
     out += get_global_id(0) * TILE_ROW;
-    for (uint v = 0; v < TILE_ROW; v++)
+    _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++)
         out[v] = sum[v];
 }

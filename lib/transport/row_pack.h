@@ -15,9 +15,12 @@ static inline void row_unpack(const void *in, uint32_t per_channel, uint32_t bit
     const uint32_t stride = ROW_CHANNELS * per_channel * bits / 8, mask = (1u << bits) - 1;
     const uint16_t *head = in;
     const uint8_t *packed = (const uint8_t *)in + ROW_HEAD;
-    for (uint32_t c = 0, i = 0; c < ROW_CHANNELS; c++) {
+    for (uint32_t shift = 0; shift < 8; shift += bits)
+        for (uint32_t i = 0; i < stride; i++)
+            values[shift / bits * stride + i] = (float)(packed[i] >> shift & mask);
+    for (uint32_t c = 0; c < ROW_CHANNELS; c++) {
         const float lo = bf16_to_float(head[2 * c]), step = bf16_to_float(head[2 * c + 1]);
-        for (uint32_t end = i + per_channel; i < end; i++)
-            values[i] = lo + step * (float)(packed[i % stride] >> i / stride * bits & mask);
+        for (uint32_t i = c * per_channel; i < (c + 1) * per_channel; i++)
+            values[i] = lo + step * values[i];
     }
 }
