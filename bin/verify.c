@@ -2,6 +2,8 @@
 // relume verify: the error of an edited picture, by path tracing some of its pixels.
 #include "driver/verify.h"
 
+#include <math.h>
+
 #include "base/log.h"
 #include "base/progress.h"
 #include "driver/stop.h"
@@ -50,8 +52,8 @@ static void show_progress(void *user, double done, const struct film *film) {
 static void report(const struct values *v, const struct verify_result *r) {
     if (!v->quiet)
         log_info("relMSE %.3g +- %.2g (95 %%, %u pixels in %u blocks); the tensor's noise is %.2g of "
-                 "it, and the picture is %+.2f %% too bright", r->relmse, r->relmse_error, r->pixels,
-                 r->blocks, r->noise, r->bias * 100);
+                 "it, and the picture is %.2f %% too %s", r->relmse, r->relmse_error, r->pixels,
+                 r->blocks, r->noise, fabs(r->bias * 100), r->bias < 0 ? "dark" : "bright");
     if (v->json) {
         struct json *j = json_new_object();
         json_add_count(j, "pixels", r->pixels);
