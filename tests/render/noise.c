@@ -8,17 +8,18 @@
 // can be right in the mean. The spread has an error of its own, which is printed.
 //
 // By default one small picture; long (RELUME_TEST_FULL=1) three scenes at three levels, 32 pictures
-// each, against a long reference. `noise DATA/scenes [SCENE]`.
+// each, against a long reference. A picture that has reached a level goes on to the next one, which is
+// what it had been if nothing had been asked before. `noise DATA/scenes [SCENE]`.
 #include "render/ztable.h"
 
 static const double FALSE_ALARMS = 1e-3;
 
-enum { COLUMNS = 4, ROWS = 3, BLOCKS = COLUMNS * ROWS, MOST_RENDERS = 32 };
+enum { COLUMNS = 4, ROWS = 3, BLOCKS = COLUMNS * ROWS, MOST_RENDERS = 32, LEVELS = 3 };
 
 struct scene_case {
     const char *name, *path;
     bool shared;            // below RELUME_SHARED_DATA
-    double levels[3];
+    double levels[LEVELS]; // falling
     int reference_spp;
 };
 
@@ -155,33 +156,56 @@ static void render_reference(struct job *job, int spp, struct reference *r) {
         r->errors[b] = sqrt(fmax(squares[b] - r->means[b] * r->means[b], 0) / (PARTS - 1));
 }
 
-static void test_level(struct job *job, double level, int renders, const struct reference *reference,
+// What the pictures of a level told, and how far they lie apart.
+static void test_level(const struct gathering *g, double level, const struct reference *reference,
                        const char *name) {
-    const struct film_options *f = &job->film;
-    struct gathering g = {.width = f->x1 - f->x0, .height = f->y1 - f->y0};
     char row[64];
-    g.values = mem_array((size_t)(renders * g.width * g.height), sizeof *g.values);
-    job->render.noise = level;
-    job->render.end = 1 << 20;
-    for (int i = 0; i < renders; i++) {
-        struct render_result r;
-        struct image im;
-        render_one(job, 1 + (uint32_t)i, &im, &r);
-        CHECK(!r.stopped && r.noise <= level && r.samples % FILM_BLOCK == 0);
-        gather(&g, &im, &r);
-        image_finish(&im);
-    }
-    const double told = sqrt(g.told_squares / renders);
-    const struct measured squared = spread(&g, reference);
+    const double told = sqrt(g->told_squares / g->renders);
+    const struct measured squared = spread(g, reference);
     const double noise = sqrt(squared.mean);
     printf("%s --noise %g: told %.4f, spread of %d pictures %.4f +- %.4f, ratio %.3f, %.0f samples\n",
-           name, level, told, renders, noise, squared.error / (2 * noise), told / noise,
-           g.samples / renders);
+           name, level, told, g->renders, noise, squared.error / (2 * noise), told / noise,
+           g->samples / g->renders);
     fflush(stdout);
     CHECK(told > 0.8 * noise && told < 1.2 * noise);
     snprintf(row, sizeof row, "%s --noise %g", name, level);
-    compare_means(&g, reference, row);
-    mem_free(g.values);
+    compare_means(g, reference, row);
+}
+
+// One picture, looked at wherever it reaches a level.
+static void render_levels(struct job *job, const struct scene_case *c, int levels, uint32_t seed,
+                          struct gathering *g) {
+    job->film.seed = job->render.tracer.seed = seed;
+    job->render.end = 1 << 20;
+    struct film *film = job_film(job);
+    for (int i = 0; i < levels; i++) {
+        struct render_result r;
+        struct image im;
+        job->render.noise = c->levels[i];
+        job_trace(job, film, &r);
+        CHECK(!r.stopped && r.noise <= c->levels[i] && r.samples % FILM_BLOCK == 0);
+        CHECK(job_image(job, film, &r, &im));
+        gather(&g[i], &im, &r);
+        image_finish(&im);
+    }
+    film_destroy(film);
+}
+
+static void test_levels(struct job *job, const struct scene_case *c, const struct reference *r) {
+    const struct film_options *f = &job->film;
+    const int levels = full_mode() ? LEVELS : 1, renders = full_mode() ? MOST_RENDERS : 12;
+    struct gathering g[LEVELS] = {{0}};
+    for (int i = 0; i < levels; i++) {
+        g[i].width = f->x1 - f->x0;
+        g[i].height = f->y1 - f->y0;
+        g[i].values = mem_array((size_t)(renders * g[i].width * g[i].height), sizeof(double));
+    }
+    for (int k = 1; k <= renders; k++)
+        render_levels(job, c, levels, (uint32_t)k, g);
+    for (int i = 0; i < levels; i++) {
+        test_level(&g[i], c->levels[i], r, c->name);
+        mem_free(g[i].values);
+    }
 }
 
 static void test_scene(const struct scene_case *c, const char *folder) {
@@ -197,8 +221,7 @@ static void test_scene(const struct scene_case *c, const char *folder) {
     if (!job_open(&job, &o))
         exit(1);
     render_reference(&job, full ? c->reference_spp : 1024, &reference);
-    for (int i = 0; i < (full ? 3 : 1); i++)
-        test_level(&job, c->levels[i], full ? MOST_RENDERS : 12, &reference, c->name);
+    test_levels(&job, c, &reference);
     mem_free(reference.values);
     job_close(&job);
 }
