@@ -2,30 +2,16 @@
 #include "driver/convergence.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/mem.h"
+#include "driver/convergence_probe.h"
 #include "math/warp.h"
-#include "world/world.h"
 
-enum { SIDE = 16, MOST_POINTS = 2 * SIDE * SIDE, MOST_LIGHTS = 64, LIGHT_SAMPLES = 4, MOST_EVENTS = 32 };
+enum { SIDE = 16, LIGHT_SAMPLES = CONVERGENCE_LIGHT_SAMPLES };
+_Static_assert(2 * SIDE * SIDE == CONVERGENCE_MOST_POINTS, "seen, and seen from there");
 
-static const double HARD = 1.0 / 200, SHARE = 0.05;
-
-struct point {
-    vec3 p, p_error, n; // n: turned to the side that is looked at
-};
-
-struct tally {
-    double open, easy, hard; // luminance that arrives: straight, through glass, and rarely so
-    double chance, samples;  // of the hard ones: sum of their chances, number
-};
-
-struct probe {
-    const struct world *world;
-    struct point points[MOST_POINTS];
-    uint32_t count, lights;
-    uint64_t drawn;
-};
+static const double SHARE = 0.05;
 
 // A sequence that fills the square evenly (Roberts 2018, R2).
 static struct vec2 draw(struct probe *b) {
@@ -43,8 +29,8 @@ static bool is_passed(uint32_t lobes) {
 }
 
 // The first surface along a ray that scatters, straight through glass and off mirrors.
-static bool find_point(const struct world *w, struct ray ray, struct point *point) {
-    for (int i = 0; i < MOST_EVENTS; i++) {
+static bool find_point(const struct world *w, struct ray ray, struct probe_point *point) {
+    for (int i = 0; i < CONVERGENCE_MOST_EVENTS; i++) {
         struct accel_hit hit;
         struct surface s;
         if (!accel_intersect(w->accel, &ray, &hit))
@@ -53,7 +39,7 @@ static bool find_point(const struct world *w, struct ray ray, struct point *poin
         const uint32_t lobes = bsdf_lobes(s.bsdf);
         const vec3 n = dot(ray.d, s.ng) > 0 ? -s.ng : s.ng;
         if (lobes & LOBE_SMOOTH) {
-            *point = (struct point){s.p, s.p_error, n};
+            *point = (struct probe_point){s.p, s.p_error, n};
             return true;
         }
         if (!is_passed(lobes))
@@ -74,7 +60,7 @@ static void look(struct probe *b, const struct job *job) {
         struct ray ray;
         if (type->place) {
             type->place(sensor->data, x, y, &place);
-            b->points[b->count++] = (struct point){place.p, place.p_error, place.n};
+            b->points[b->count++] = (struct probe_point){place.p, place.p_error, place.n};
             continue;
         }
         type->ray(sensor->data, x, y, draw(b), &ray);
@@ -84,7 +70,7 @@ static void look(struct probe *b, const struct job *job) {
 
 static void bounce(struct probe *b) {
     for (uint32_t i = 0, n = b->count; i < n; i++) {
-        const struct point *from = &b->points[i];
+        const struct probe_point *from = &b->points[i];
         const struct frame frame = frame_from_normal(from->n);
         const vec3 d = to_world(&frame, warp_cosine_hemisphere(draw(b)));
         const struct ray ray = {offset_point(from->p, from->p_error, from->n, d), d, 0, INFINITY};
@@ -92,10 +78,9 @@ static void bounce(struct probe *b) {
     }
 }
 
-// Whether a light is reached along a ray, and how much smooth glass there is before it.
-static bool reaches(const struct world *w, struct ray ray, uint32_t light, int *glass) {
+bool probe_reaches(const struct world *w, struct ray ray, uint32_t light, int *glass) {
     *glass = 0;
-    for (int i = 0; i < MOST_EVENTS; i++) {
+    for (int i = 0; i < CONVERGENCE_MOST_EVENTS; i++) {
         struct accel_hit hit;
         struct surface s;
         ray = ray_ordinary(ray);
@@ -118,46 +103,74 @@ static bool reaches(const struct world *w, struct ray ray, uint32_t light, int *
     return false;
 }
 
-static void add_sample(struct probe *b, const struct point *at, uint32_t light, struct tally *t) {
+bool probe_sample_light(const struct probe *b, vec3 p, uint32_t light, struct vec2 u,
+                        struct light_sample *s, double *energy) {
     const struct world_light *l = &b->world->lights[light];
-    struct light_sample s;
-    int glass;
-    const bool lit = l->type->aim ? l->type->aim(l->data, draw(b), &s)
-                                  : l->type->sample(l->data, at->p, draw(b), &s);
-    const float cosine = lit ? dot(at->n, s.wi) : 0;
-    if (!(cosine > 0))
-        return;
-    const spectrum emission = l->type->aim ? light_late_emission(l, s.wi) : s.emission;
-    const double energy = (double)(spectrum_luminance(emission) * cosine / s.pdf_sa);
-    const vec3 o = offset_point(at->p, at->p_error, at->n, s.wi);
-    if (!(energy > 0) || !reaches(b->world, world_ray_to_light(o, &s), light, &glass))
-        return;
-    const double chance = s.delta ? 0 : (double)(cosine * INV_PI / s.pdf_sa);
-    const bool hard = glass > 0 && chance < HARD;
-    *(glass == 0 ? &t->open : hard ? &t->hard : &t->easy) += energy;
-    t->chance += hard ? chance : 0;
-    t->samples += hard;
+    if (!(l->type->aim ? l->type->aim(l->data, u, s) : l->type->sample(l->data, p, u, s)))
+        return false;
+    const spectrum emission = l->type->aim ? light_late_emission(l, s->wi) : s->emission;
+    *energy = (double)(spectrum_luminance(emission) / s->pdf_sa);
+    return *energy > 0;
 }
 
-static void tell(const struct job *job, uint32_t light, double share, double chance, struct json *out) {
+bool probe_add_hard(struct hard_light *h, const struct light_sample *s, double cosine,
+                    double energy) {
+    static const double HARD = 1.0 / 200;
+    const double chance = s->delta ? 0 : cosine * (double)INV_PI / (double)s->pdf_sa;
+    if (chance >= HARD)
+        return false;
+    h->energy += energy;
+    h->chance += chance;
+    h->samples++;
+    return true;
+}
+
+static void add_sample(struct probe *b, const struct probe_point *at, uint32_t light,
+                       struct tally *t) {
+    struct light_sample s;
+    double energy;
+    int glass;
+    if (!probe_sample_light(b, at->p, light, draw(b), &s, &energy))
+        return;
+    const double cosine = (double)dot(at->n, s.wi);
+    const vec3 o = offset_point(at->p, at->p_error, at->n, s.wi);
+    if (!(cosine > 0) || !probe_reaches(b->world, world_ray_to_light(o, &s), light, &glass))
+        return;
+    energy *= cosine;
+    if (glass == 0)
+        t->open += energy;
+    else if (!probe_add_hard(&t->through, &s, cosine, energy))
+        t->easy += energy;
+}
+
+static void tell(const struct job *job, uint32_t light, const char *by, double share, double chance,
+                 struct json *out) {
     const struct scene_light *l = &job->scene->lights[light];
+    const bool mirrored = strcmp(by, "reflection") == 0;
+    const char *way = mirrored ? "by smooth reflection" : "through smooth glass";
+    const char *remedy = mirrored ? "rougher surfaces" : "thindielectric or rough glass";
     struct json *j = json_append_object(out);
     json_add_text(j, "light", l->name);
+    json_add_text(j, "by", by);
     json_add_number(j, "share", share);
     json_add_number(j, "chance", chance);
     if (share == 0)
         log_warn_at(l->object->at, "path tracing will not find the light of \"%s\": none of it reaches "
                     "what the camera sees but by mirrors or smooth glass", l->name);
     else if (chance == 0)
-        log_warn_at(l->object->at, "path tracing will not find the light of \"%s\" that comes through "
-                    "smooth glass, %.0f %% of all light on what the camera sees: it is a point to "
-                    "every ray; an area light, thindielectric or rough glass can be found", l->name,
-                    100 * share);
+        log_warn_at(l->object->at, "path tracing will not find the light of \"%s\" that comes %s, "
+                    "%.0f %% of all light on what the camera sees: it is a point to every ray; an area "
+                    "light or %s can be found", l->name, way, 100 * share, remedy);
     else
         log_warn_at(l->object->at, "path tracing will converge slowly: %.0f %% of all light on what "
-                    "the camera sees comes from \"%s\" through smooth glass, and is found by one path "
-                    "in %.0f; a larger light, thindielectric or rough glass helps", 100 * share,
-                    l->name, 1 / chance);
+                    "the camera sees comes from \"%s\" %s, and is found by one path in %.0f; a larger "
+                    "light or %s would help", 100 * share, l->name, way, 1 / chance, remedy);
+}
+
+static void tell_hard(const struct job *job, uint32_t light, const char *by,
+                      const struct hard_light *h, double all, struct json *out) {
+    if (h->energy > SHARE * all)
+        tell(job, light, by, h->energy / all, h->chance / h->samples, out);
 }
 
 static uint32_t specular_lobes(const struct scene *s) {
@@ -167,23 +180,27 @@ static uint32_t specular_lobes(const struct scene *s) {
     return lobes & LOBE_SPECULAR;
 }
 
-// The k-th light that is looked at: of many, every so many.
-static uint32_t light_at(const struct probe *b, uint32_t k) {
+uint32_t probe_light(const struct probe *b, uint32_t k) {
     return (uint32_t)((uint64_t)k * b->world->light_count / b->lights);
+}
+
+static double sum_of(const struct tally *t) {
+    return t->open + t->easy + t->through.energy + t->mirrored.energy;
 }
 
 static double count_light(struct probe *b, struct tally *tallies) {
     double all = 0;
-    for (uint32_t k = 0; k < b->lights; k++) {
-        struct tally *t = &tallies[k];
+    for (uint32_t k = 0; k < b->lights; k++)
         for (uint32_t i = 0; i < b->count * LIGHT_SAMPLES; i++)
-            add_sample(b, &b->points[i / LIGHT_SAMPLES], light_at(b, k), t);
-        all += t->open + t->easy + t->hard;
-    }
+            add_sample(b, &b->points[i / LIGHT_SAMPLES], probe_light(b, k), &tallies[k]);
+    probe_mirrors(b, tallies);
+    for (uint32_t k = 0; k < b->lights; k++)
+        all += sum_of(&tallies[k]);
     return all;
 }
 
 void convergence_add(const struct job *job, struct json *out) {
+    enum { MOST_LIGHTS = 64 };
     const struct world *w = job->world;
     struct json *list = json_add_array(out, "will_not_converge");
     if (!specular_lobes(job->scene))
@@ -197,11 +214,11 @@ void convergence_add(const struct job *job, struct json *out) {
     const double all = count_light(b, tallies);
     for (uint32_t k = 0; k < b->lights; k++) {
         const struct tally *t = &tallies[k];
-        const uint32_t light = light_at(b, k);
-        if (t->hard > SHARE * all)
-            tell(job, light, t->hard / all, t->chance / t->samples, list);
-        else if (w->lights[light].type->delta && t->open + t->easy + t->hard == 0)
-            tell(job, light, 0, 0, list);
+        const uint32_t light = probe_light(b, k);
+        tell_hard(job, light, "glass", &t->through, all, list);
+        tell_hard(job, light, "reflection", &t->mirrored, all, list);
+        if (w->lights[light].type->delta && sum_of(t) == 0)
+            tell(job, light, "nothing", 0, 0, list);
     }
     mem_free(b);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether path tracing will converge on a scene: light that only comes through smooth glass.
+// Whether path tracing will converge on a scene: light that only comes through smooth glass or by way
+// of mirrors.
 //
 // From a surface behind smooth glass a light cannot be sampled, since glass bends and splits what
 // goes through; it is found when a direction that the surface's material sampled happens to end in
@@ -11,7 +12,11 @@
 // distribution would find it less than once in 200 directions. A light is told of when hard samples
 // bring more than 5 % of all light that these points have. A delta light none of whose light
 // reaches them is told of where the scene has mirrors or smooth glass. Straight lines are not those
-// of refraction, and what mirrors send on is not looked for.
+// of refraction.
+//
+// Likewise what mirrors, and glass that reflects, throw on these points, found by paths that come
+// near the light (convergence_mirror.c). Its chance is that of a flat mirror close by: the light
+// looks as large as from the mirror. Bent mirrors make it look larger or smaller.
 #pragma once
 
 #include "base/json.h"

@@ -99,6 +99,9 @@ sky='<emitter type="constant"/>'
 side='<emitter type="point"><point name="position" x="-2" y="2" z="1"/></emitter>'
 mirror='<shape type="sphere"><point name="center" x="1" y="1" z="0"/><bsdf type="conductor"/></shape>'
 
+looking='<shape type="rectangle"><transform name="to_world"><scale value="2"/><rotate y="1" angle="90"/><translate x="-2.5" y="2" z="1"/></transform><bsdf type="conductor"/></shape>'
+small="<shape type='sphere'><point name='center' x='-2' y='2' z='1'/><float name='radius' value='0.02'/><emitter type='area'><rgb name='radiance' value='900'/></emitter></shape>"
+
 # troubles NUMBER WORDS BODY: `info` warns of so many lights, with these words
 troubles() {
     room room "$3"
@@ -115,7 +118,13 @@ troubles 0 '' "$bulb$large"    # found by one direction in a few
 troubles 0 '' "$pane$sky"      # the sky is everywhere
 troubles 0 '' "$filament"      # no glass
 troubles 0 '' "$bulb$side$sky" # beside the glass
-troubles 0 '' "${bulb/dielectric/thindielectric}$point"
+troubles 1 'lamp" that comes by smooth reflection' "$looking${side/emitter /emitter id=\"lamp\" }"
+troubles 1 'by smooth reflection, and is found by one path in' "$looking$small"
+troubles 0 '' "$looking$large"          # a lamp that paths find
+troubles 0 '' "$looking$sky"            # everywhere
+troubles 0 '' "${looking/conductor/roughconductor}$side"
+troubles 0 '' "${pane/dielectric/thindielectric}$sun"
+troubles 1 '9 % of all' "${bulb/dielectric/thindielectric}$point" # what the bulb throws back and forth
 
 # Lists of what lights light, and what the camera does not see.
 room linked "<emitter type='point'><string name='exclude' value='floor, walls'/></emitter>"
