@@ -13,10 +13,12 @@ static const char style[] =
     "body{font:14px/1.4 sans-serif;color:#222;background:#fff;margin:0 auto;padding:16px;"
     "max-width:1232px}h1{font-size:20px;margin:0 0 4px}h2{font-size:16px;margin:22px 0 6px}"
     "p{margin:4px 0;max-width:100ch}code{background:#f2f2f2;padding:1px 4px;overflow-wrap:anywhere}"
-    ".plots{display:flex;flex-wrap:wrap;gap:16px}.plots div{max-width:600px;overflow-x:auto}"
+    ".plots{display:flex;flex-wrap:wrap;gap:16px}.plots div{max-width:100%;overflow-x:auto}"
     ".answer{font-size:16px;border-left:4px solid #b00020;"
-    "padding:2px 10px;margin:8px 0}table{border-collapse:collapse}th,td{padding:3px 10px;"
+    "padding:2px 10px;margin:8px 0}table{border-collapse:collapse}th,td{padding:3px 8px;"
     "text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}th{background:#f6f6f6}"
+    ".settings{font-size:13px;overflow-x:auto}.settings td{font-variant-numeric:tabular-nums}"
+    ".settings th{white-space:normal;vertical-align:bottom}.settings td:first-child{white-space:normal}"
     "th:first-child,td:first-child{text-align:left}tr.front td{background:#eef6ee}"
     ".pictures{display:flex;flex-wrap:wrap;gap:14px}figure{margin:0;font-size:12px;max-width:410px}"
     "img{image-rendering:pixelated;margin-right:4px;display:inline-block}";
@@ -37,8 +39,9 @@ static void write_head(const struct study *study, FILE *f) {
     plot_escape(o->job.scene, f);
     fprintf(f, "</h1>\n<p><code>");
     plot_escape(o->command, f);
-    fprintf(f, "</code></p>\n<p>%d x %d pixels, %zu settings, %d runs of each; reference: ",
-            study->reference.rgb.width, study->reference.rgb.height, study->point_count, o->repeat);
+    fprintf(f, "</code></p>\n<p>%d x %d pixels, %zu settings, %d runs of each%s; reference: ",
+            study->reference.rgb.width, study->reference.rgb.height, study->point_count, o->repeat,
+            o->even ? " and more of those with fewer samples" : "");
     plot_escape(o->reference ? o->reference : "reference.exr, rendered as the scene says", f);
     fprintf(f, "%s. relume %s.</p>\n", study->reference.variance.pixels
                ? ", whose own noise is taken off" : ", whose noise is not known and counts as bias",
@@ -65,7 +68,7 @@ static void write_exponent(bool known, const struct line_fit *fit, FILE *f) {
 }
 
 static void write_exponents(const struct study *study, FILE *f) {
-    fprintf(f, "<div><h2>Exponents of relMSE</h2>\n<table><tr><th>series</th>");
+    fprintf(f, "<div class=\"settings\"><h2>Exponents of relMSE</h2>\n<table><tr><th>series</th>");
     if (study->along >= 0) {
         const char *name = study->options->factors->items[study->along].name;
         fprintf(f, "<th>over %s</th><th>of variance</th>", name);
@@ -113,12 +116,12 @@ static void write_row(const struct study *study, const struct study_point *p, FI
 }
 
 static void write_table(const struct study *study, FILE *f) {
-    fprintf(f, "<h2>Settings</h2>\n<table><tr><th>setting</th><th>runs</th><th>seconds</th><th>from - to</th>"
-               "<th>processor s</th><th>reading s</th><th>MB</th><th>relMSE</th><th>variance</th>"
+    fprintf(f, "<h2>Settings</h2>\n<div class=\"settings\"><table><tr><th>setting</th><th>runs</th>"
+               "<th>seconds</th><th>from - to</th><th>processor s</th><th>reading s</th><th>MB</th><th>relMSE</th><th>variance</th>"
                "<th>squared bias</th></tr>\n");
     for (size_t i = 0; i < study->point_count; i++)
         write_row(study, &study->points[i], f);
-    fprintf(f, "</table>\n<p>relMSE of one run = variance + squared bias, each relative to the "
+    fprintf(f, "</table></div>\n<p>relMSE of one run = variance + squared bias, each relative to the "
                "reference; ± is half a 95 %% confidence interval. Seconds are medians of the "
                "runs. A squared bias that its interval cannot tell from 0 may be negative. Shaded: on the "
                "Pareto front of error and seconds. MB: most memory in use beyond what was before "

@@ -2,6 +2,7 @@
 #include "image/plot.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { LEFT = 68, RIGHT = 16, TOP = 34, BELOW = 54, LEGEND_LINE = 18, MOST_TICKS = 400 };
 
@@ -228,12 +229,20 @@ static void draw_frame(const struct plot *p, const struct axis *x, const struct 
     fprintf(out, "</text>\n");
 }
 
+// Lettering that fits: characters of sans-serif are up to 0.6 of its size wide in the mean.
+static double fitting_size(const char *text, double room) {
+    const double fits = room / (0.6 * (double)strlen(text));
+    return fits < 12 ? fits : 12;
+}
+
 static void draw_legend(const struct plot *p, const struct axis *x, const struct axis *y, FILE *out) {
     for (size_t s = 0; s < p->series_count; s++) {
         const double top = y->from + BELOW + (double)LEGEND_LINE * (double)s;
         draw_symbol(s, x->from + 6, top - 4, out);
-        fprintf(out, "<text x=\"%.1f\" y=\"%.1f\">", x->from + 18, top);
-        plot_escape(p->series[s].name, out);
+        const char *name = p->series[s].name;
+        fprintf(out, "<text x=\"%.1f\" y=\"%.1f\" font-size=\"%.3g\">", x->from + 18, top,
+                fitting_size(name, p->width - x->from - 18));
+        plot_escape(name, out);
         fprintf(out, "</text>\n");
     }
 }
