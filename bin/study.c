@@ -14,7 +14,7 @@
 struct values {
     const char *scene, *directory, *reference, *target;
     int repeat, reference_spp, size[2], seed, threads;
-    bool lenient, quiet, json;
+    bool even, lenient, quiet, json;
     struct option_list factors, defines;
 };
 
@@ -32,8 +32,11 @@ static const struct option_spec options[] = {
      .help = "a setting and its values: integrator, sampler, spp, time, clamp,\n"
              "adaptive, or a parameter of an integrator or sampler\n"
              "(max-depth=2,4,8); all combinations run; one value fixes a setting", .required = true},
-    {.name = "repeat", .type = OPTION_INT, .offset = AT(repeat), .argument = "N", .min = 2, .max = 4000,
+    {.name = "repeat", .type = OPTION_INT, .offset = AT(repeat), .argument = "N", .min = 2, .max = STUDY_MOST_RUNS,
      .def = "5", .help = "runs of each combination; 3 and more give confidence intervals"},
+    {.name = "even", .type = OPTION_FLAG, .offset = AT(even),
+     .help = "run settings of fewer samples more often, so that all take as many:\n"
+             "where rare bright samples make the error, few runs do not meet them"},
     {.name = "reference", .type = OPTION_TEXT, .offset = AT(reference), .argument = "REF.exr",
      .help = "the truth (best with a layer `variance`); without, it is rendered"},
     {.name = "reference-spp", .type = OPTION_INT, .offset = AT(reference_spp), .argument = "N",
@@ -105,7 +108,7 @@ static int run_study(const struct values *v, const char *command, struct arena *
                 .stop = stop_on_signals(),
                 .reading = {.defines = defines, .define_count = v->defines.count,
                             .width = v->size[0], .height = v->size[1], .lenient = v->lenient}},
-        .factors = &factors, .repeat = v->repeat, .reference = v->reference,
+        .factors = &factors, .repeat = v->repeat, .even = v->even, .reference = v->reference,
         .reference_spp = v->reference_spp, .directory = v->directory, .command = command,
         .version = RELUME_VERSION, .progress = update, .user = &progress};
     if (!defines || !parse_target(v->target, &o) || !study_factors_parse(&v->factors, arena, &factors))

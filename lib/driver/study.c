@@ -157,13 +157,13 @@ static bool measure(struct study *study, struct study_point *p, const struct ima
 
 // All runs of one setting. false after an error message.
 static bool run_point(struct study *study, const struct study_combination *c, size_t index,
-                      struct progress_state *progress) {
+                      int repeat, struct progress_state *progress) {
     const struct study_options *o = study->options;
     struct study_point *p = &study->points[study->point_count];
     const struct study_setting setting = {o->factors, c};
     struct job_options options = o->job;
     struct job job;
-    *p = (struct study_point){.runs = arena_alloc(&study->arena, (size_t)o->repeat * sizeof *p->runs)};
+    *p = (struct study_point){.runs = arena_alloc(&study->arena, (size_t)repeat * sizeof *p->runs)};
     memcpy(p->values, c->values, sizeof p->values);
     study_apply(&setting, &options);
     options.progress = tell;
@@ -172,9 +172,9 @@ static bool run_point(struct study *study, const struct study_combination *c, si
     if (!job_open(&job, &options))
         return false;
     p->load_seconds = job.load_seconds;
-    struct image *pictures = mem_array((size_t)o->repeat, sizeof *pictures);
+    struct image *pictures = mem_array((size_t)repeat, sizeof *pictures);
     bool good = true;
-    for (int i = 0; good && !is_stopped(o) && i < o->repeat; i++) {
+    for (int i = 0; good && !is_stopped(o) && i < repeat; i++) {
         p->runs[i].seed = seed_of(o, index, i);
         if (!(good = run_once(o, &job, &p->runs[i], &pictures[i])))
             break;
@@ -188,8 +188,8 @@ static bool run_point(struct study *study, const struct study_combination *c, si
     if (p->run_count >= 2)
         good = measure(study, p, pictures) && good;
     study->point_count += p->run_count >= 2;
-    study->stopped |= p->run_count < o->repeat;
-    for (int i = 0; i < o->repeat; i++)
+    study->stopped |= p->run_count < repeat;
+    for (int i = 0; i < repeat; i++)
         image_finish(&pictures[i]);
     mem_free(pictures);
     return good;
@@ -205,14 +205,20 @@ static double work_of(const struct study_options *o, const struct study_combinat
     return options.spp ? options.spp : s->sample_count ? s->sample_count : DEFAULT_SPP;
 }
 
+static int runs_of(const struct study_options *o, double work, double most) {
+    const double runs = o->even ? o->repeat * most / work : o->repeat;
+    return runs < STUDY_MOST_RUNS ? (int)runs : STUDY_MOST_RUNS;
+}
+
 static bool run_all(struct study *study, const struct study_combination *all, size_t count,
                     const struct job *base, struct progress_state *progress) {
     const struct study_options *o = study->options;
     double most = 0;
+    for (size_t i = 0; i < count; i++)
+        most = fmax(most, work_of(o, &all[i], base->scene));
     for (size_t i = 0; i < count; i++) {
         const double work = work_of(o, &all[i], base->scene);
-        progress->all += o->repeat * work;
-        most = fmax(most, work);
+        progress->all += runs_of(o, work, most) * work;
     }
     const double wished = o->reference_spp ? o->reference_spp
                                            : fmax(REFERENCE_FACTOR * most, LEAST_REFERENCE_SPP);
@@ -230,7 +236,7 @@ static bool run_all(struct study *study, const struct study_combination *all, si
     for (size_t i = 0; good && i < count && !is_stopped(o); i++) {
         progress->current = work_of(o, &all[i], base->scene);
         snprintf(progress->note, sizeof progress->note, "setting %zu of %zu", i + 1, count);
-        good = run_point(study, &all[i], i, progress);
+        good = run_point(study, &all[i], i, runs_of(o, progress->current, most), progress);
     }
     log_set_level(level);
     study->stopped |= is_stopped(o);

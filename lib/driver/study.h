@@ -11,10 +11,14 @@
 enum study_metric { STUDY_RELMSE, STUDY_VARIANCE, STUDY_BIAS2 };
 extern const char *const study_metric_names[]; // NULL-terminated
 
+enum { STUDY_MOST_RUNS = 4000 };
+
 struct study_options {
     struct job_options job;  // scene, size, -D values, seed, threads, stop
     const struct study_factors *factors;
-    int repeat;              // runs of each setting, >= 2
+    int repeat;              // runs of each setting, >= 2 and at most STUDY_MOST_RUNS
+    bool even;               // settings of fewer samples run more often, so that all take as many:
+                             // rare bright samples then weigh on all points alike
     const char *reference;   // picture; NULL: it is rendered, as the scene says
     int reference_spp;       // 0: 16 times the most of the study, at least 1024
     bool has_target;

@@ -59,6 +59,11 @@ holds "$folder/clamp/study.json" 'len(p) == 4'
 holds "$folder/clamp/study.json" \
     'all((q["bias2"]["low"] > 0) == (q["settings"]["clamp"] != "0") for q in p)'
 
+# As many samples for each setting.
+expect 0 "$relume" study "$scene" --size 8x8 --vary spp=2,4,8 --even --repeat 2 --reference-spp 64 -q \
+    -o "$folder/even"
+holds "$folder/even/study.json" '[len(q["runs"]) for q in p] == [8, 4, 2]'
+
 # A scene of known error: independent samples have the exponent -1. Its standard error here is about
 # 0.03 (five runs of 576 pixels each, four points): 0.2 is far outside.
 expect 0 "$relume" study "$scene" --size 24x24 --vary sampler=independent --vary spp=4,16,64,256 \
