@@ -42,17 +42,22 @@ static bool restore(struct checkpoint *c, struct film *film) {
     return agrees;
 }
 
-// The disk is full when the picture is to be written, or takes no journal: known now already.
+// The disk is full when the picture is to be written, or takes no journal: known now already, as far as
+// a picture does not compress to a quarter of its colours.
 static bool has_space(const struct checkpoint *c, const struct film *film) {
-    enum { LEAST = 4096 };
-    const double need = LEAST + (c->options.keep && !file_exists(c->path)
-                                     ? (double)film_values(film) * (double)sizeof(double) : 0);
+    enum { LEAST = 4096, COLOURS = 3 };
+    const struct film_options *f = &c->job->film;
+    const double pixels = (double)(f->x1 - f->x0) * (double)(f->y1 - f->y0);
+    const double bytes = c->options.exr && c->options.exr->half ? 2 : 4;
+    const double picture = LEAST + pixels * COLOURS * bytes / 4;
+    const double journal = c->options.keep && !file_exists(c->path)
+                               ? (double)film_values(film) * (double)sizeof(double) : 0;
     const double space = file_space(c->path);
-    if (space < need)
+    if (space < picture + journal)
         log_error("%s: cannot be written: the disk has %.3g MB free, and at least %.3g MB are needed%s",
-                  c->options.output, space * 1e-6, need * 1e-6,
-                  c->options.keep ? " for the journal" : "");
-    return space >= need;
+                  c->options.output, space * 1e-6, (picture + journal) * 1e-6,
+                  journal > 0 ? ", most of it for the journal" : "");
+    return space >= picture + journal;
 }
 
 bool checkpoint_open(struct checkpoint *c, const struct checkpoint_options *options,

@@ -5,6 +5,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -264,6 +265,16 @@ extern "C" bool oiio_module_display(const struct oiio_host *host, struct decoder
 
 // ---- PNG ----------------------------------------------------------------------------------------
 
+// Whether all of it came to the disk: OpenImageIO's own writer does not say when that is full.
+static bool write_file(const char *path, const std::vector<unsigned char> &bytes, std::string &why) {
+    std::FILE *f = std::fopen(path, "wb");
+    const bool written = f && std::fwrite(bytes.data(), 1, bytes.size(), f) == bytes.size();
+    const bool closed = f && std::fclose(f) == 0;
+    if (!written || !closed)
+        why = std::strerror(errno);
+    return written && closed;
+}
+
 static bool write_png(const char *path, const unsigned char *bytes, int width, int height,
                       int channels, bool srgb, std::string &why) {
     OIIO::attribute("threads", 1);
@@ -272,14 +283,15 @@ static bool write_png(const char *path, const unsigned char *bytes, int width, i
         why = OIIO::geterror();
         return false;
     }
+    OIIO::Filesystem::IOVecOutput memory;
     OIIO::ImageSpec spec(width, height, channels, OIIO::TypeDesc::UINT8);
     if (srgb)
         spec["oiio:ColorSpace"] = "sRGB";
-    const bool good = output->open(path, spec) &&
+    const bool good = output->set_ioproxy(&memory) && output->open(path, spec) &&
                       output->write_image(OIIO::TypeDesc::UINT8, bytes) && output->close();
     if (!good)
         why = output->geterror();
-    return good;
+    return good && write_file(path, memory.buffer(), why);
 }
 
 extern "C" bool oiio_module_write_png(const char *path, const unsigned char *bytes, int width,

@@ -150,13 +150,18 @@ END
 mkdir "$folder/small"
 if mount -t tmpfs -o size=256k none "$folder/small" 2>/dev/null; then
     cp "$scene" "$folder/small/x.exr"
-    for options in "--size 512x256 --spp 2" "--size 512x512 --spp 1000000000 --checkpoint 1"; do
+    for options in "--size 280x280 --spp 2" "--size 512x256 --spp 1000000000" "--size 512x512 --spp 1000000000 --checkpoint 1"; do
         # shellcheck disable=SC2086 # words
         expect 1 timeout 20 "$relume" render "$folder/clamp.xml" -o "$folder/small/x.exr" $options
         contains "$err" "x.exr"
         cmp -s "$scene" "$folder/small/x.exr" || fail "a full disk cost a picture"
         [ "$(ls "$folder/small")" = x.exr ] || fail "left on a full disk: $(ls "$folder/small")"
     done
+    expect 0 "$relume" render "$scene" -o "$folder/fits.exr" --size 8x8 --spp 1
+    head -c 256k /dev/zero >"$folder/small/rest" 2>/dev/null
+    expect 1 "$relume" tonemap "$folder/fits.exr" -o "$folder/small/x.png"
+    contains "$err" "x.png"
+    [ ! -e "$folder/small/x.png" ] || fail "an empty PNG was written"
     umount "$folder/small"
 fi
 
