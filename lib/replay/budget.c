@@ -23,17 +23,20 @@ static size_t rows_of(const struct tensor_block *b) {
 
 // ---- trials -------------------------------------------------------------------------------------
 
-// The picture of a trial, and what errors there count.
+// What errors of a trial's picture count. All is divided by its mean, whatever that is.
 static void weigh_picture(struct budget *b, int trial) {
     const size_t n = 3 * plane_of(b);
     double mean = 0;
     for (size_t i = 0; i < n; i++)
         mean += (double)b->picture[trial][i] / (double)n;
-    const double eps = 1e-3 * mean * mean;
+    const double unit = mean > 0 ? 1 / mean : 1;
     for (size_t i = 0; i < n; i++) {
-        const double v = (double)b->picture[trial][i], size = v * v + eps;
-        b->loss[trial][i] = size > 0 ? (float)(1 / (size * (double)n)) : 0;
+        const double v = unit * (double)b->picture[trial][i];
+        b->loss[trial][i] = (float)(1 / ((v * v + 1e-3) * (double)n));
     }
+    for (uint32_t i = 0; i < b->tensor->block_count; i++)
+        for (size_t k = 0; k < 3 * (size_t)b->tensor->blocks[i].coefficients; k++)
+            b->weights[trial][i][k] *= (float)unit;
 }
 
 static void make_trials(struct budget *b, struct edit_tensor *e) {
@@ -105,7 +108,7 @@ static void choose(struct budget *b, bool halves, double price) {
     }
 }
 
-// relMSE of a sum of coefficients, taken as an error of the trial's picture.
+// relMSE of a sum of weighted coefficients, taken as an error of the trial's picture.
 static double relmse_of(const struct budget *b, int trial, const float *error) {
     double sum = 0;
     for (size_t i = 0; i < 3 * plane_of(b); i++)
@@ -296,7 +299,7 @@ bool budget_store(const char *path, const char *output, const struct budget_opti
     struct budget b = {.tensor = f ? tensor_get(f) : NULL, .options = o};
     bool done = false;
     *report = (struct budget_report){0};
-    if (f && edit_tensor_init(&e, b.tensor, path))
+    if (f && tensor_check_values(f) && edit_tensor_init(&e, b.tensor, path))
         done = store(&b, &e, output, report);
     if (e.tensor)
         edit_tensor_finish(&e);

@@ -20,9 +20,9 @@ struct budget {
     const struct tensor *tensor;
     const struct budget_options *options;
     struct budget_block *blocks;
-    const float **weights[TRIALS]; // [block][coefficient][channel]
-    float *picture[TRIALS]; // 3 planes
-    float *loss[TRIALS];    // what a squared error of a pixel's channel adds to relMSE
+    float **weights[TRIALS]; // [block][coefficient][channel], over the mean of the picture
+    float *picture[TRIALS];  // 3 planes
+    float *loss[TRIALS];     // what a squared error of a pixel's channel, over the mean, adds to relMSE
     struct arena arena;
 };
 

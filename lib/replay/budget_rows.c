@@ -143,8 +143,8 @@ static float row_cost(const struct pass *p, uint32_t coefficient, const float er
             const float w = p->all->weights[t][p->index][coefficient * TILE_CHANNELS + k];
             float own = 0;
             for (uint32_t i = k * TILE_LANES; i < (k + 1) * TILE_LANES; i++)
-                own += error[i] * error[i] * loss[t][i];
-            sum += w * w * own;
+                own += w * error[i] * (w * error[i]) * loss[t][i];
+            sum += own;
         }
         if (!isfinite(sum))
             return INFINITY;

@@ -87,11 +87,11 @@ void trial_restore(struct edit_tensor *e, struct trial_memory *m) {
 
 // ---- weights ------------------------------------------------------------------------------------
 
-const float **trial_weights(const struct edit_tensor *e, struct arena *arena) {
+float **trial_weights(const struct edit_tensor *e, struct arena *arena) {
     const struct tensor *t = e->tensor;
     double(*factors)[CURVE_CHANNELS] = mem_array(e->factor_count, sizeof *factors);
     double(*groups)[CURVE_CHANNELS] = mem_array(e->group_count, sizeof *groups);
-    const float **weights = arena_alloc(arena, (t->block_count + 1) * sizeof *weights);
+    float **weights = arena_alloc(arena, (t->block_count + 1) * sizeof *weights);
     for (uint32_t i = 0; i < e->factor_count; i++)
         edit_factor_value(e, &e->factors[i], factors[i]);
     for (uint32_t g = 0; g < e->group_count; g++)

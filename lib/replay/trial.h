@@ -21,4 +21,4 @@ void trial_apply(struct edit_tensor *e, int trial, struct trial_memory *m);
 void trial_restore(struct edit_tensor *e, struct trial_memory *m);
 
 // weights[block][coefficient][channel] of the objects as they are, f_q included; memory of the arena.
-const float **trial_weights(const struct edit_tensor *e, struct arena *arena);
+float **trial_weights(const struct edit_tensor *e, struct arena *arena);
