@@ -98,6 +98,71 @@ static double brute_force(const struct form *f) {
     return sum;
 }
 
+struct exponents {
+    double u, v; // along the tangent and across
+};
+
+// Ashikhmin and Shirley's density of half vectors, and where it is drawn (2000, eq. 4 and 9).
+static double half_density(struct exponents n, double cosine, double phi) {
+    const double c = cos(phi), s = sin(phi);
+    return sqrt((n.u + 1) * (n.v + 1)) / (2 * M_PI) * pow(cosine, n.u * c * c + n.v * s * s);
+}
+
+static void draw_half(struct exponents n, double x, double y, double *cosine, double *phi) {
+    *phi = atan2(sqrt(n.u + 1) * sin(2 * M_PI * x), sqrt(n.v + 1) * cos(2 * M_PI * x));
+    const double c = cos(*phi), s = sin(*phi);
+    *cosine = pow(1 - y, 1 / (n.u * c * c + n.v * s * s + 1));
+}
+
+// The same integral for narrow lobes: half vectors drawn by the lobe and by a broad one, balanced.
+static double by_half_vectors(const struct form *f, double nu, double nv) {
+    enum { N = 1 << 17 };
+    const double g = 1.1673039782614187; // x^5 = x + 1
+    const struct exponents lobes[2] = {{nu, nv}, {nu / 20, nv / 20}};
+    double sum = 0;
+    for (int i = 0; i < 2 * N; i++) {
+        const double at = i / 2, u = fmod(0.5 + at / g, 1), v = fmod(0.5 + at / (g * g), 1);
+        const double x = fmod(0.5 + at / (g * g * g), 1), y = fmod(0.5 + at / (g * g * g * g), 1);
+        const double s = sqrt(u), p = 2 * M_PI * v, wo[3] = {s * cos(p), s * sin(p), sqrt(1 - u)};
+        double cosine, phi, out[CURVE_CHANNELS];
+        draw_half(lobes[i % 2], x, y, &cosine, &phi);
+        const double sine = sqrt(1 - cosine * cosine);
+        const double h[3] = {sine * cos(phi), sine * sin(phi), cosine};
+        const double d = wo[0] * h[0] + wo[1] * h[1] + wo[2] * h[2];
+        const double wi[3] = {2 * d * h[0] - wo[0], 2 * d * h[1] - wo[1], 2 * d * h[2] - wo[2]};
+        if (!(d > 0 && wi[2] > 0))
+            continue;
+        form_eval(f, wo, wi, out);
+        sum += out[0] * 4 * d /
+               (half_density(lobes[0], cosine, phi) + half_density(lobes[1], cosine, phi)) / N;
+    }
+    return sum;
+}
+
+// Two curves, whose bins are many and narrow.
+static void two_curves(void) {
+    static const double exponents[][2] = {{100, 200}, {150, 20}};
+    struct arena arena = {0};
+    for (int i = 0; i < 2; i++)
+        for (uint32_t bins = 8; bins <= 64; bins += 56) {
+            const double nu = exponents[i][0], nv = exponents[i][1];
+            struct model_parameters p = model_defaults;
+            struct form f;
+            p.exponent_u = nu;
+            p.exponent_v = nv;
+            CHECK(model_make(model_find("ashikhminshirley"), &p, &arena, &f, "test"));
+            for (uint32_t c = 0; c < f.curves; c++) {
+                const struct basis b = basis_make(&arena, BASIS_HAT, c ? bins : 64, SPACING_UNIFORM);
+                form_tabulate(&f, c, &b, form_filter(&f, c), &arena);
+            }
+            const double sum = albedo_of(&f, 0), truth = by_half_vectors(&f, nu, nv);
+            printf("Ashikhmin-Shirley of %g, %g, 64 x %u nodes: %.5f, by half vectors %.5f\n", nu, nv,
+                   bins, sum, truth);
+            CHECK_NEAR(sum / truth, 1, 0.005);
+        }
+    arena_finish(&arena);
+}
+
 static void albedos_are_integrals(void) {
     struct arena arena = {0};
     const struct {
@@ -133,5 +198,6 @@ int main(void) {
     groups_are_multisets(32, 3);
     CHECK(edit_groups_count(6, 4, 0) == 84 && edit_groups_count(3, 4, 24) == 241);
     albedos_are_integrals();
+    two_curves();
     return check_result();
 }
