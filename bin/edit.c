@@ -4,11 +4,8 @@
 
 #include "base/log.h"
 #include "base/mem.h"
-#include "base/thread.h"
-#include "edit_session.h"
+#include "edit_picture.h"
 #include "replay/edit_list.h"
-#include "replay/measure.h"
-#include "replay/picture.h"
 #include "replay/save_scene.h"
 #include "replay_report.h"
 #include "subcommand.h"
@@ -62,40 +59,7 @@ static void more_help(void) {
     edit_session_help();
 }
 
-// ---- pictures -----------------------------------------------------------------------------------
-
-struct evaluation {
-    struct edit *edit;
-    float *frame;
-};
-
-static bool product(void *ctx) {
-    struct evaluation *e = ctx;
-    edit_forget(e->edit);
-    return edit_follow(e->edit);
-}
-
-static bool compose(void *ctx) {
-    struct evaluation *e = ctx;
-    return edit_compose(e->edit, e->frame);
-}
-
-static bool make_picture(const struct replay_values *c, const struct edit_session *s,
-                         struct evaluation *e, struct replay_timing *t, float *variance) {
-    const double start = time_seconds();
-    if (!edit_settle(e->edit, e->frame))
-        return false;
-    t->first = time_seconds() - start;
-    t->device = edit_device(e->edit);
-    replay_count(s->tensor, t);
-    if (c->time && !replay_measure(&(struct replay_measured){product, compose, e}, t))
-        return false;
-    t->bytes = edit_last_cost(e->edit).bytes;
-    edit_variance(e->edit, variance);
-    t->noise = measure_noise(s->tensor, e->frame, variance);
-    return picture_write(c->output, s->tensor, e->frame, c->variance ? variance : NULL, s->command,
-                         RELUME_VERSION);
-}
+// ---- changes --------------------------------------------------------------------------------------
 
 static bool change_all(const struct values *v, struct edit *e) {
     static const struct {
@@ -126,10 +90,9 @@ static bool evaluate(const struct values *v, struct edit_session *s,
     struct edit *e = edit_create(s->tensor, v->tensor, &o);
     float *frame = mem_array(3 * plane, sizeof *frame), *variance = mem_array(plane, sizeof *frame);
     struct replay_timing timing = {0};
-    struct evaluation evaluation = {e, frame};
     bool good = e && change_all(v, e) &&
                 edit_script_play(script, e, v->script, frame, edit_session_frame, s);
-    good = good && (!v->common.output || make_picture(&v->common, s, &evaluation, &timing, variance));
+    good = good && (!v->common.output || edit_picture(&v->common, s, e, frame, &timing, variance));
     good = good && (!v->save || save(v, edit_objects(e)));
     if (good && v->common.output)
         replay_report(&v->common, &timing, out);
