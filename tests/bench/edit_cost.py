@@ -3,7 +3,7 @@
 """What a tensor costs: precomputing against path tracing of the same samples and bounces, in
 interleaved pairs, for the Cornell box with six editable objects, two of them glossy.
 
-usage: edit_cost.py BUILD [PAIRS [SIZE [SPP]]]
+usage: edit_cost.py BUILD [PAIRS [SIZE [SPP [LATER]]]]
 """
 import json
 import pathlib
@@ -32,6 +32,7 @@ def main():
     pairs = int(sys.argv[2]) if len(sys.argv) > 2 else 5
     size = sys.argv[3] if len(sys.argv) > 3 else "64x64"
     spp = sys.argv[4] if len(sys.argv) > 4 else "1024"
+    later = sys.argv[5] if len(sys.argv) > 5 else "kept"
     relume = str(build / "bin/relume")
     text = (root / "data/scenes/cornell-box/scene.xml").read_text()
     for name in ("Floor", "BackWall"):
@@ -47,12 +48,12 @@ def main():
             a = run(relume, "render", scene, "-o", folder + "/a.exr", "--max-depth", "5", *same)
             b = run(relume, "precompute", "edit", scene, "-o", folder + "/b.safetensors", *edit,
                     "--bounces", "4", "--series", "64,1,1,1", "--tail", "none",
-                    "--later", "lambertian", *same)
+                    "--later", later, *same)
             plain.append(a["paths"] / a["seconds"])
             tensor.append(b["paths"] / b["seconds"])
             ratios.append(b["seconds"] / a["seconds"])
             processor.append(b["processor"] / a["processor"])
-        print(f"{size}, {spp} samples, {b['objects']} objects, {b['groups']} products, "
+        print(f"{size}, {spp} samples, later hops {later}, {b['objects']} objects, {b['groups']} products, "
               f"{b['file_bytes'] / 1e6:.0f} MB; medians of {pairs} pairs (lowest, highest)")
         for name, values in (("picture, paths/s", plain), ("tensor, paths/s", tensor),
                              ("time of the tensor / of the picture", ratios),

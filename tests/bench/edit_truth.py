@@ -7,7 +7,7 @@
 # (p - u)(p - v) = (p - m)^2 - (u - m)^2; two tensors tell their own noise, which is taken off likewise.
 #
 # usage: edit_truth.py RELUME SCENES OUT.json [--scene NAME] [--size N] [--spp N] [--truth N] [--edits N]
-#                      [--series J,J2,...] [--later NAME] [--sharp] [--all-bounces]
+#                      [--series J,J2,...] [--kind KIND] [--later NAME] [--sharp] [--all-bounces]
 #   --sharp        lobes down to roughness 0.02, which the bins cannot carry
 #   --all-bounces  against light of all bounces, the tail frozen
 import argparse
@@ -124,7 +124,9 @@ class Bench:
     def edits(self, objects, most, bases):
         r = random.Random(11)
         for kind in KINDS[:self.options.edits]:
-            yield kind, make_edit(r, objects, kind, most, bases)
+            edit = make_edit(r, objects, kind, most, bases)
+            if not self.options.kind or kind in self.options.kind:
+                yield kind, edit
 
     def scene(self, name):
         o = self.options
@@ -164,6 +166,7 @@ def main():
         a.add_argument("--" + name, type=int, default=value)
     a.add_argument("--later", default="kept", choices=("kept", "lambertian"))
     a.add_argument("--series", action="append")
+    a.add_argument("--kind", action="append", choices=sorted(set(KINDS)))
     a.add_argument("--sharp", action="store_true")
     a.add_argument("--all-bounces", action="store_true")
     options = a.parse_args()
