@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bsdf/bin_sampler.h"
 
+#include "curve/arc.h"
+
 static const double COSINE_SHARE = 0.25;
 
 // Whether a marginal stands for a curve of the form (and not for a fixed factor, or for none).
@@ -68,7 +70,7 @@ void bin_sampler_init(struct bin_sampler *s, const struct form *f, struct arena 
 static double reach(const struct curve_strategy *s, struct direction wo) {
     if (s->kind != STRATEGY_POLAR || s->first.gamma.kind != GAMMA_THETA_H)
         return 1;
-    const double theta_o = atan2(sqrt(wo.x * wo.x + wo.y * wo.y), wo.z);
+    const double theta_o = arc_quarter(sqrt(wo.x * wo.x + wo.y * wo.y), wo.z > 0 ? wo.z : 0);
     return curve_marginal_cdf(&s->first, s->kind, 0.5 * (theta_o + CURVE_END));
 }
 

@@ -100,24 +100,32 @@ static bool is_empty(const struct curve_marginal *m) {
 // Density over x.
 static double marginal_pdf(const struct curve_marginal *m, struct angles *a,
                            enum curve_strategy_kind kind) {
-    double t;
     if (!m->basis)
         return 1 / CURVE_END;
     const double gamma = gamma_at(&m->gamma, a);
     if (gamma > CURVE_END * (1 + 1e-12))
         return 0;
-    const uint32_t i = basis_interval(m->basis, gamma, &t);
+    const uint32_t i = basis_interval(m->basis, gamma);
     if (m->ends[i][0] == m->ends[i][1])
         return m->ends[i][0];
     const double x = coordinate(kind, m->gamma.kind, gamma);
     const double width = m->edges[i + 1] - m->edges[i];
-    t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;
+    const double t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;
     return m->ends[i][0] + t * (m->ends[i][1] - m->ends[i][0]);
+}
+
+static double level_sample(const struct curve_marginal *m, double u) {
+    const uint32_t n = basis_intervals(m->basis);
+    const double place = u * n;
+    const uint32_t i = place < n ? (uint32_t)place : n - 1;
+    return m->edges[i] + fmin(place - i, 1) * (m->edges[i + 1] - m->edges[i]);
 }
 
 static double marginal_sample(const struct curve_marginal *m, double u) {
     if (!m->basis)
         return u * CURVE_END;
+    if (m->level)
+        return level_sample(m, u);
     uint32_t lo = 0, hi = basis_intervals(m->basis); // invariant: cdf[lo] <= u < cdf[hi]
     while (hi - lo > 1) {
         const uint32_t middle = lo + (hi - lo) / 2;
@@ -136,11 +144,10 @@ static double marginal_sample(const struct curve_marginal *m, double u) {
 
 double curve_marginal_cdf(const struct curve_marginal *m, enum curve_strategy_kind kind,
                           double gamma) {
-    double t;
-    const uint32_t i = basis_interval(m->basis, gamma, &t);
+    const uint32_t i = basis_interval(m->basis, gamma);
     const double x = coordinate(kind, m->gamma.kind, gamma);
     const double width = m->edges[i + 1] - m->edges[i];
-    t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;
+    const double t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;
     const double a = m->ends[i][0], b = m->ends[i][1];
     return fmin(m->cdf[i] + (a + 0.5 * t * (b - a)) * t * width, 1);
 }
@@ -155,6 +162,7 @@ void curve_marginal_level(struct curve_marginal *m, struct arena *arena) {
     }
     m->cdf = cdf;
     m->ends = (const double(*)[2])ends;
+    m->level = true;
 }
 
 // ---- strategies of a term -------------------------------------------------------------------

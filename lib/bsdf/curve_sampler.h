@@ -43,6 +43,7 @@ struct curve_marginal {
     const double *cdf;        // intervals + 1
     const double *edges;      // of x, intervals + 1
     const double (*ends)[2];  // density over x at both ends of an interval
+    bool level;               // intervals are equally likely, and even inside
 };
 
 struct curve_strategy {

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "curve/arc.h"
+
 const char *const gamma_names[] = {"none", "theta_h", "theta_d", "theta_i", "theta_o", "theta_r",
                                    "phi_h", "power_u", "power_v", "ratio", "slope_u", "slope_v",
                                    0};
@@ -47,14 +49,19 @@ static double acos_exp(double l) {
     return l > 0 ? atan2(sqrt(-expm1(-2 * l)), exp(-l)) : 0;
 }
 
+// Angle from the normal, pi/2 at most.
+static double upper(double sine, double cosine) {
+    return arc_quarter(sine, cosine > 0 ? cosine : 0);
+}
+
 // theta_r, from the chords to the mirror direction and to its opposite.
 static double theta_r(const double *wi, const double *wo) {
-    return 2 * atan2(norm(wi[0] + wo[0], wi[1] + wo[1], wi[2] - wo[2]),
-                     norm(wi[0] - wo[0], wi[1] - wo[1], wi[2] + wo[2]));
+    return 2 * arc_quarter(norm(wi[0] + wo[0], wi[1] + wo[1], wi[2] - wo[2]),
+                           norm(wi[0] - wo[0], wi[1] - wo[1], wi[2] + wo[2]));
 }
 
 static double theta(const double *w) {
-    return atan2(sqrt(w[0] * w[0] + w[1] * w[1]), w[2]);
+    return upper(sqrt(w[0] * w[0] + w[1] * w[1]), w[2]);
 }
 
 static double compute(const struct gamma *g, struct angles *a) {
@@ -63,12 +70,12 @@ static double compute(const struct gamma *g, struct angles *a) {
     switch (g->kind) {
     case GAMMA_NONE:
     case GAMMA_COUNT: return 0;
-    case GAMMA_THETA_H: v = atan2(a->sin_h, a->cos_h); break;
-    case GAMMA_THETA_D: v = atan2(a->sin_d, a->cos_d); break;
+    case GAMMA_THETA_H: v = upper(a->sin_h, a->cos_h); break;
+    case GAMMA_THETA_D: v = arc_quarter(a->sin_d, a->cos_d); break;
     case GAMMA_THETA_I: v = theta(a->wi); break;
     case GAMMA_THETA_O: v = theta(a->wo); break;
     case GAMMA_THETA_R: return theta_r(a->wi, a->wo);
-    case GAMMA_PHI_H: v = atan2(fabs(a->h[1]), fabs(a->h[0])); break;
+    case GAMMA_PHI_H: v = arc_quarter(fabs(a->h[1]), fabs(a->h[0])); break;
     case GAMMA_POWER_U: v = acos_exp(angles_log(a) * a->cos2_phi); break;
     case GAMMA_POWER_V: v = acos_exp(angles_log(a) * a->sin2_phi); break;
     case GAMMA_RATIO: v = atan(sqrt(2 * angles_log(a) * a->sin2_phi * g->n)); break;

@@ -29,7 +29,7 @@ bool basis_equal(const struct basis *a, const struct basis *b) {
 
 static uint32_t guess(const struct basis *b, double gamma) {
     const uint32_t n = basis_intervals(b);
-    const double x = gamma / CURVE_END;
+    const double x = gamma * (1 / CURVE_END);
     const double place = n * (b->spacing == SPACING_UNIFORM ? x : sqrt(x));
     return place < n ? (uint32_t)place : n - 1;
 }
@@ -46,28 +46,30 @@ static uint32_t bisect(const struct basis *b, double gamma) {
     return lo;
 }
 
-uint32_t basis_interval(const struct basis *b, double gamma, double *t) {
+uint32_t basis_interval(const struct basis *b, double gamma) {
     uint32_t i = b->spacing == SPACING_ANY ? bisect(b, gamma) : guess(b, gamma);
     while (i > 0 && gamma < b->knots[i])
         i--;
     while (i + 1 < basis_intervals(b) && gamma >= b->knots[i + 1])
         i++;
-    const double x = (gamma - b->knots[i]) / (b->knots[i + 1] - b->knots[i]);
-    *t = x < 0 ? 0 : x > 1 ? 1 : x;
     return i;
 }
 
+double basis_place(const struct basis *b, uint32_t i, double gamma) {
+    const double x = (gamma - b->knots[i]) / (b->knots[i + 1] - b->knots[i]);
+    return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
 uint32_t basis_at(const struct basis *b, double gamma, uint32_t index[2], double value[2]) {
-    double t;
     if (!(gamma >= 0 && gamma <= b->knots[basis_intervals(b)] * (1 + 1e-6)))
         return 0;
-    const uint32_t i = basis_interval(b, gamma, &t);
+    const uint32_t i = basis_interval(b, gamma);
     index[0] = i;
     value[0] = 1;
     if (b->kind == BASIS_BOX)
         return 1;
     index[1] = i + 1;
-    value[1] = t;
-    value[0] = 1 - t;
+    value[1] = basis_place(b, i, gamma);
+    value[0] = 1 - value[1];
     return 2;
 }

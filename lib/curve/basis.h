@@ -46,8 +46,9 @@ struct basis basis_make(struct arena *arena, enum basis_kind kind, uint32_t coun
                         enum basis_spacing spacing);
 bool basis_equal(const struct basis *a, const struct basis *b);
 
-// The interval that holds gamma; *t is the place inside it, in [0, 1]. gamma in [0, last knot].
-uint32_t basis_interval(const struct basis *b, double gamma, double *t);
+// The interval that holds gamma, in [0, last knot], and the place inside it, in [0, 1].
+uint32_t basis_interval(const struct basis *b, double gamma);
+double basis_place(const struct basis *b, uint32_t interval, double gamma);
 
 // The functions that are not zero at gamma and their values: 1 for boxes, 2 for hats, 0 beyond the
 // last knot (by more than rounding in single precision).

@@ -33,14 +33,13 @@ struct overlap_axis {
 // The interval between knots that gamma lies in; the last one beyond them.
 static inline uint32_t overlap_interval(const struct overlap_axis *a, double gamma) {
     const uint32_t last = basis_intervals(&a->basis) - 1;
-    double t;
     if (!(gamma > 0))
         return 0;
     if (a->per_step > 0) {
         const double place = gamma * a->per_step;
         return place < last ? (uint32_t)place : last;
     }
-    return gamma < a->basis.knots[last + 1] ? basis_interval(&a->basis, gamma, &t) : last;
+    return gamma < a->basis.knots[last + 1] ? basis_interval(&a->basis, gamma) : last;
 }
 
 // What lights are added to.
