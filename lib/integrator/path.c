@@ -13,6 +13,9 @@ static const struct param params[] = {
      .unit = "", .help = "most edges of a path: 1 sees emitters, 2 adds direct light; -1: no limit"},
     {"rr_depth", PARAM_INT, offsetof(struct path, rr_depth), .def = "3", .min = 1, .max = 1e6,
      .unit = "", .help = "edges after which Russian roulette may end a path"},
+    {"shading_samples", PARAM_INT, offsetof(struct path, shading_samples), .def = "1", .min = 1,
+     .max = MOST_SHADING_SAMPLES, .unit = "",
+     .help = "paths that go on from each first hit; a sample is their mean"},
     {"hide_emitters", PARAM_BOOL, offsetof(struct path, hide_emitters), .def = "false", .unit = "",
      .help = "do not show lights that are seen directly"},
     {"strict_normals", PARAM_BOOL, offsetof(struct path, strict_normals), .def = "false",
@@ -37,25 +40,25 @@ static bool same_side(const struct surface *s, vec3 w, vec3 wl) {
     return dot(w, s->ng) * cos_theta(wl) > 0;
 }
 
-static void leave_scene(const struct path *p, struct trace_context *ctx, int i, struct lane *l) {
+static void leave_scene(const struct path *p, struct trace_context *ctx, struct lane *l) {
     l->alive = false;
     if (l->from.depth > 0 || !p->hide_emitters)
-        vertex_add_infinite(ctx, i, l->ray.d, l->beta, &l->from);
+        vertex_add_infinite(ctx, l->sample, l->ray.d, l->beta, &l->from);
 }
 
 // First non-null event of the path: coverage and the layers of what is seen first.
-static void first_event(struct trace_context *ctx, int i, struct lane *l, const struct surface *s,
+static void first_event(struct trace_context *ctx, struct lane *l, const struct surface *s,
                         const struct closure *closure) {
     l->first_done = true;
-    ctx->sink->type->covered(ctx->sink, i);
+    ctx->sink->type->covered(ctx->sink, l->sample);
     if (ctx->sink->wants_surface)
-        vertex_add_first(ctx, i, s, closure);
+        vertex_add_first(ctx, l->sample, s, closure);
 }
 
 static void survive_roulette(const struct path *p, struct lane *l) {
     if (l->from.depth < (uint32_t)p->rr_depth)
         return;
-    const float q = roulette_chance(l->beta, l->eta2, 0.95f);
+    const float q = roulette_chance(l->beta, l->scale, 0.95f);
     if (sampler_1d(draw(l, DRAW_ROULETTE)) < q)
         l->beta /= q;
     else
@@ -79,7 +82,7 @@ static void scatter(const struct path *p, struct lane *l, const struct surface *
         return;
     }
     l->beta *= b->weight;
-    l->eta2 *= b->eta * b->eta;
+    l->scale *= b->eta * b->eta;
     const uint32_t first_lobe = l->from.depth == 0 ? b->lobe : l->from.lobe;
     l->from = (struct path_origin){s->p, b->pdf_sa, (b->lobe & LOBE_DELTA) != 0, l->from.depth + 1,
                                    first_lobe, side, s->shape + 1};
@@ -108,13 +111,13 @@ static void sample_light(const struct path *p, struct trace_context *ctx, struct
 }
 
 // One vertex: emission found, light sampled, direction chosen.
-static void shade_surface(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
+static void shade_surface(const struct path *p, struct trace_context *ctx, struct lane *l,
                           const struct surface *s) {
     struct bsdf_sample b = {.lobe = 0};
     if (l->from.depth > 0 || !p->hide_emitters)
-        vertex_add_emission(ctx, i, s, l->ray.d, l->beta, &l->from);
+        vertex_add_emission(ctx, l->sample, s, l->ray.d, l->beta, &l->from);
     const vec3 wo = to_local(&s->point.frame, -l->ray.d);
-    const struct closure *closure = response_resolve(ctx, i, l->from.depth, s, wo);
+    const struct closure *closure = response_resolve(ctx, l->sample, l->from.depth, s, wo);
     const bool goes_on = closure && path_may_contribute(p, l->events + 1) &&
                          (!p->strict_normals || same_side(s, -l->ray.d, wo));
     const vec3 side = goes_on ? vertex_light_side(s, closure, wo) : v3(0, 0, 0);
@@ -126,7 +129,7 @@ static void shade_surface(const struct path *p, struct trace_context *ctx, int i
         l->alive = closure_sample(closure, lobe, sampler_2d(draw(l, DRAW_DIRECTION)), &b);
     }
     if (!l->first_done && !(b.lobe & LOBE_NULL))
-        first_event(ctx, i, l, s, closure);
+        first_event(ctx, l, s, closure);
     if (l->alive && b.lobe & LOBE_NULL)
         pass_through(l, s, &b);
     else if (l->alive)
@@ -137,17 +140,19 @@ static void shade_surface(const struct path *p, struct trace_context *ctx, int i
     }
 }
 
-static void shade(const struct path *p, struct trace_context *ctx, int i, struct lane *l,
+static void shade(const struct path *p, struct trace_context *ctx, struct lane *l,
                   const struct accel_hit *hit) {
     struct surface s;
     world_surface(ctx->world, &l->ray, hit, &s);
-    shade_surface(p, ctx, i, l, &s);
+    shade_surface(p, ctx, l, &s);
 }
 
-static void start(struct trace_context *ctx, struct lane *l, const struct path_start *from) {
+static void start(struct trace_context *ctx, struct lane *l, const struct path_start *from,
+                  uint32_t sample) {
+    l->sample = (uint16_t)sample;
     l->ray = from->ray;
     l->beta = spectrum_grey(1);
-    l->eta2 = 1;
+    l->scale = 1;
     l->from = (struct path_origin){.p = from->ray.o, .delta = true};
     l->sampler = from->sampler;
     l->events = 0;
@@ -198,7 +203,7 @@ static void finish_as_packet(struct trace_context *ctx, struct lane *lanes, cons
     ctx->shadow_rays += (uint64_t)p->count;
     for (int i = 0; i < p->count; i++)
         if (!(blocked >> i & 1))
-            vertex_add_light(ctx, p->lanes[i], &lanes[p->lanes[i]].shadow);
+            vertex_add_light(ctx, lanes[p->lanes[i]].sample, &lanes[p->lanes[i]].shadow);
 }
 
 // The shadow rays of one vertex of the lanes listed. Packets depend on the lanes alone, never on a
@@ -216,7 +221,7 @@ static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const 
             finish_as_packet(ctx, lanes, &p, together);
         else
             for (int k = 0; k < p.count; k++)
-                vertex_finish_light(ctx, p.lanes[k], &lanes[p.lanes[k]].shadow);
+                vertex_finish_light(ctx, lanes[p.lanes[k]].sample, &lanes[p.lanes[k]].shadow);
     }
 }
 
@@ -262,8 +267,10 @@ static void shade_kind(const struct path *p, struct trace_context *ctx, struct w
                        const struct accel_hit *hits, uint32_t kind, struct kinds *k) {
     const uint32_t count = k->count[kind];
     const uint16_t *list = k->lanes[kind];
+    // Paths of one sample add to one sum: their order may not depend on the lanes beside them.
+    const uint32_t least = p->shading_samples > 1 ? 1 : LEAST_IN_PACKET;
     uint32_t done = 0;
-    while (count - done >= LEAST_IN_PACKET) {
+    while (count - done >= least) {
         const uint32_t left = count - done;
         const struct packet group = {list + done, left < SINK_LANES ? (int)left : SINK_LANES};
         path_shade_wide(p, ctx, w->lanes, &group, hits);
@@ -283,16 +290,52 @@ static void shade_all(const struct path *p, struct trace_context *ctx, struct wa
         struct lane *l = &w->lanes[i];
         l->shadow.pending = false;
         if (hits[i].shape == SCENE_NONE)
-            leave_scene(p, ctx, i, l);
+            leave_scene(p, ctx, l);
         else
-            add_lane(&kinds, path_wide_kind(ctx, i, l, &hits[i]), i);
+            add_lane(&kinds, path_wide_kind(ctx, l, &hits[i]), i);
     }
     for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
         shade_kind(p, ctx, w, hits, kind, &kinds);
     for (uint32_t k = 0; k < kinds.count[0]; k++) {
         const uint16_t i = kinds.lanes[0][k];
-        shade(p, ctx, i, &w->lanes[i], &hits[i]);
+        shade(p, ctx, &w->lanes[i], &hits[i]);
     }
+}
+
+// The paths of a sample. Chains, which are of one path, are not shared.
+static uint32_t paths_of_sample(const struct path *p, const struct trace_context *ctx) {
+    return ctx->sink->chains ? 1 : (uint32_t)p->shading_samples;
+}
+
+// Samples that run side by side: whole packets, with room for all their paths.
+static uint32_t samples_of_wave(uint32_t paths) {
+    return MOST_LANES / paths / SINK_LANES * SINK_LANES;
+}
+
+static void become_path(struct lane *l, uint32_t path, uint32_t paths) {
+    l->beta /= (float)paths;
+    l->scale *= (float)paths;
+    sampler_split(&l->sampler, path, paths);
+}
+
+// From a first hit all paths of its sample go on, each by points of its own. hits: by lane; NULL
+// where every lane has its surface already.
+static void share_first_hits(struct wave *w, uint32_t paths, struct accel_hit *hits) {
+    const uint32_t begun = w->count;
+    for (uint32_t path = 1; path < paths; path++)
+        for (uint32_t k = 0; k < begun; k++) {
+            const uint32_t from = w->alive[k], to = from + path * samples_of_wave(paths);
+            if (hits && hits[from].shape == SCENE_NONE)
+                continue;
+            if (hits)
+                hits[to] = hits[from];
+            w->lanes[to] = w->lanes[from];
+            become_path(&w->lanes[to], path, paths);
+            w->alive[w->count++] = (uint16_t)to;
+        }
+    for (uint32_t k = 0; paths > 1 && k < begun; k++)
+        if (!hits || hits[w->alive[k]].shape != SCENE_NONE)
+            become_path(&w->lanes[w->alive[k]], 0, paths);
 }
 
 // Drops the lanes that have ended at a vertex, after the shadow rays of all.
@@ -318,6 +361,8 @@ static void advance(const struct path *p, struct trace_context *ctx, struct wave
         packet = packet_at(ctx->world, w->alive, w->count, first);
         find_hits(ctx, w->lanes, &packet, camera, hits);
     }
+    if (camera)
+        share_first_hits(w, paths_of_sample(p, ctx), hits);
     shade_all(p, ctx, w, hits);
     settle(ctx, w, camera);
 }
@@ -325,26 +370,34 @@ static void advance(const struct path *p, struct trace_context *ctx, struct wave
 // The first vertex, where it is no hit.
 static void begin_at_surfaces(const struct path *p, struct trace_context *ctx, struct wave *w,
                               const struct path_start *starts) {
-    for (uint32_t i = 0; i < w->count; i++) {
-        w->lanes[i].shadow.pending = false;
-        shade_surface(p, ctx, (int)i, &w->lanes[i], starts[i].surface);
+    share_first_hits(w, paths_of_sample(p, ctx), NULL);
+    for (uint32_t k = 0; k < w->count; k++) {
+        struct lane *l = &w->lanes[w->alive[k]];
+        l->shadow.pending = false;
+        shade_surface(p, ctx, l, starts[l->sample].surface);
     }
     settle(ctx, w, true);
 }
 
-static void trace(const void *data, struct trace_context *ctx, const struct path_start *starts) {
-    const struct path *p = data;
+// The samples [first, end) of a call.
+static void trace_wave(const struct path *p, struct trace_context *ctx,
+                       const struct path_start *starts, uint32_t first, uint32_t end) {
     struct wave w;
-    for (w.count = 0; w.count < ctx->lanes; w.count++) {
-        start(ctx, &w.lanes[w.count], &starts[w.count]);
+    for (w.count = 0; first + w.count < end; w.count++) {
+        start(ctx, &w.lanes[w.count], &starts[first + w.count], first + w.count);
         w.alive[w.count] = (uint16_t)w.count;
     }
-    if (!path_may_contribute(p, 0))
-        return;
     if (starts->surface)
         begin_at_surfaces(p, ctx, &w, starts);
     for (bool camera = !starts->surface; w.count; camera = false)
         advance(p, ctx, &w, camera);
+}
+
+static void trace(const void *data, struct trace_context *ctx, const struct path_start *starts) {
+    const struct path *p = data;
+    const uint32_t most = samples_of_wave(paths_of_sample(p, ctx));
+    for (uint32_t i = 0; path_may_contribute(p, 0) && i < ctx->lanes; i += most)
+        trace_wave(p, ctx, starts, i, ctx->lanes - i < most ? ctx->lanes : i + most);
 }
 
 const struct integrator_type integrator_path = {

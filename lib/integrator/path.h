@@ -5,7 +5,7 @@
 #include "integrator/vertex.h"
 
 struct path {
-    int max_depth, rr_depth;
+    int max_depth, rr_depth, shading_samples;
     bool hide_emitters, strict_normals;
     int light_choice;
 };
@@ -25,6 +25,7 @@ enum {
 enum {
     LEAST_IN_PACKET = 4, // rays: fewer are faster one by one
     MOST_LANES = SINK_MOST_LANES,
+    MOST_SHADING_SAMPLES = MOST_LANES / SINK_LANES,
 };
 
 struct lane {
@@ -32,8 +33,10 @@ struct lane {
     spectrum beta;
     struct path_origin from;
     struct sampler sampler;
-    float eta2; // product of the squared relative indices crossed: refraction's radiance scaling
+    float scale; // beta times this is what roulette goes by: blind to the radiance scaling of
+                 // refraction (squared relative indices) and to how many share the first hit
     uint32_t events; // vertices, null ones included
+    uint16_t sample; // the sink's lane
     bool alive, first_done;
     struct shadow_test shadow;
 };
@@ -49,15 +52,15 @@ static inline bool path_may_contribute(const struct path *p, uint32_t edges) {
 }
 
 // The kind of material by which path_shade_wide can shade a hit; 0: it cannot.
-static inline uint32_t path_wide_kind(const struct trace_context *ctx, int lane,
-                                      const struct lane *l, const struct accel_hit *hit) {
+static inline uint32_t path_wide_kind(const struct trace_context *ctx, const struct lane *l,
+                                      const struct accel_hit *hit) {
     const struct response *r = ctx->response;
     const uint32_t kind = ctx->world->shapes[hit->shape].wide_kind;
     if (!kind || (!l->first_done && ctx->sink->wants_surface))
         return 0;
     if (r == &response_physical)
         return kind;
-    return r->is_wide && r->is_wide(r, ctx, lane, l->from.depth, hit->shape) ? kind : 0;
+    return r->is_wide && r->is_wide(r, ctx, l->sample, l->from.depth, hit->shape) ? kind : 0;
 }
 
 // One vertex of a packet's lanes, whose materials are of one kind: the same as one by one, with the

@@ -5,8 +5,8 @@
 #include "integrator/path.h"
 #include "world/light_lanes.h"
 
-_Static_assert(offsetof(struct lane, eta2) == offsetof(struct lane, sampler.reversed) + 8 &&
-                   offsetof(struct lane, events) == offsetof(struct lane, eta2) + 4 &&
+_Static_assert(offsetof(struct lane, scale) == offsetof(struct lane, sampler.reversed) + 8 &&
+                   offsetof(struct lane, events) == offsetof(struct lane, scale) + 4 &&
                    offsetof(struct lane, from.lobe) == offsetof(struct lane, from.pdf_sa) + 12,
                "what is gathered together lies together");
 
@@ -17,7 +17,7 @@ struct vertices {
     const struct accel_hit *hit[WIDE_LANES];
     struct lane spare;
     struct wide3 d, beta;
-    wide eta2;
+    wide scale;
     wide_uint depth, lobe, events;
     struct sampler_lanes sampler;
     const struct wide_bsdf *kind;
@@ -53,9 +53,9 @@ static void gather_lanes(struct vertices *v) {
     gather(v, offsetof(struct lane, sampler.seed), f); // seed, index, count, dimension
     v->sampler.seed = (wide_uint)f[0];
     v->sampler.index = (wide_uint)f[1];
-    gather(v, offsetof(struct lane, sampler.reversed), f); // reversed, padding, eta2, events
+    gather(v, offsetof(struct lane, sampler.reversed), f); // reversed, padding, scale, events
     v->sampler.reversed = (wide_uint)f[0];
-    v->eta2 = f[2];
+    v->scale = f[2];
     v->events = (wide_uint)f[3];
 }
 
@@ -91,7 +91,7 @@ static void draw(const struct vertices *v, uint32_t purpose, wide u[2]) {
 }
 
 static void add_emission(struct trace_context *ctx, const struct path *p, const struct vertices *v,
-                         const struct packet *packet, const struct surfaces *s) {
+                         const struct surfaces *s) {
     for (uint32_t left = v->active; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         const struct world_shape *shape = &ctx->world->shapes[v->hit[i]->shape];
@@ -101,7 +101,7 @@ static void add_emission(struct trace_context *ctx, const struct path *p, const 
         const struct surface one = {.p = wide3_lane(&s->p, i), .ng = wide3_lane(&s->ng, i),
                                     .light = shape->light,
                                     .point.at = world_texture_point(shape, v->hit[i])};
-        vertex_add_emission(ctx, packet->lanes[i], &one, l->ray.d, l->beta, &l->from);
+        vertex_add_emission(ctx, l->sample, &one, l->ray.d, l->beta, &l->from);
     }
 }
 
@@ -184,7 +184,7 @@ static uint32_t survive(const struct path *p, const struct vertices *v, uint32_t
     if (!(alive & wide_bits(plays)))
         return alive;
     const wide most = wide_max(beta->x, wide_max(beta->y, beta->z));
-    const wide q = wide_min(2 * most * v->eta2, wide_of(0.95f)); // as roulette_chance
+    const wide q = wide_min(2 * most * v->scale, wide_of(0.95f)); // as roulette_chance
     wide u[2];
     draw(v, DRAW_ROULETTE, u);
     const wide divisor = wide_select(plays, q, wide_of(1));
@@ -257,7 +257,7 @@ static uint32_t look(const struct path *p, const struct vertices *v, struct wide
 static void note_vertices(struct trace_context *ctx, const struct vertices *v,
                           const struct packet *packet) {
     for (int i = 0; i < packet->count; i++)
-        ctx->response->note(ctx->response, ctx, packet->lanes[i], v->lane[i]->from.depth,
+        ctx->response->note(ctx->response, ctx, v->lane[i]->sample, v->lane[i]->from.depth,
                             v->hit[i]->shape);
 }
 
@@ -272,7 +272,7 @@ void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lan
     gather_lanes(&v);
     gather_materials(ctx->world, &v, &points);
     world_surfaces(ctx->world, v.hit, &at.s);
-    add_emission(ctx, p, &v, packet, &at.s);
+    add_emission(ctx, p, &v, &at.s);
     if (ctx->response->note)
         note_vertices(ctx, &v, packet);
     const struct wide3 back = {-v.d.x, -v.d.y, -v.d.z};
@@ -288,7 +288,7 @@ void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lan
         struct lane *l = v.lane[i];
         l->alive = alive >> i & 1;
         if (!l->first_done)
-            ctx->sink->type->covered(ctx->sink, packet->lanes[i]);
+            ctx->sink->type->covered(ctx->sink, l->sample);
         l->first_done = true;
         if (++l->events >= INTEGRATOR_MOST_EVENTS && l->alive) {
             l->alive = false;

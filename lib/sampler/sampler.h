@@ -78,6 +78,14 @@ static inline struct sampler sampler_start(const struct sampler_type *type, uint
                             count ? count : 1, 0, reverse_bits(index)};
 }
 
+// Goes on as one of `parts` paths that share what was drawn so far, each with its point of a set so
+// many times as large.
+static inline void sampler_split(struct sampler *s, uint32_t part, uint32_t parts) {
+    s->index = s->index * parts + part;
+    s->count *= parts;
+    s->reversed = reverse_bits(s->index);
+}
+
 static inline float sampler_1d(struct sampler *s) {
     return s->type->next_1d(s);
 }

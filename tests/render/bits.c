@@ -8,7 +8,8 @@ enum { WIDTH = 70, HEIGHT = 45 };
 // One of everything that could depend on order: instances, straight-through surfaces, a lens, a
 // wide filter, several lights with and without group.
 static const char scene[] =
-    "<scene version='3.0.0'><integrator type='path'/>"
+    "<scene version='3.0.0'><integrator type='path'>"
+    "<integer name='shading_samples' value='%d'/></integrator>"
     "<sensor type='thinlens'><float name='aperture_radius' value='0.05'/>"
     "<float name='focus_distance' value='5'/><float name='fov' value='50'/>"
     "<transform name='to_world'><lookat origin='1,2,5' target='0,0.5,0' up='0,1,0'/></transform>"
@@ -44,10 +45,12 @@ static struct job_options options_with(int threads) {
                                 .light_groups = true, .aovs = all_layers};
 }
 
+static int shading_samples = 1;
+
 static void render_scene(const char *sampler, const struct job_options *o, struct image *im) {
     char text[8192];
     struct render_result result;
-    snprintf(text, sizeof text, scene, sampler);
+    snprintf(text, sizeof text, scene, shading_samples, sampler);
     render_text(text, o, im, &result);
 }
 
@@ -110,7 +113,7 @@ static void stopping_gives_the_same_bits(const char *sampler, uint64_t samples) 
     struct render_result result;
     struct image stopped, fresh;
     char text[8192];
-    snprintf(text, sizeof text, scene, sampler);
+    snprintf(text, sizeof text, scene, shading_samples, sampler);
     o.spp = 100000;
     o.stop = &stop;
     o.progress = stop_after_some;
@@ -183,18 +186,24 @@ static void layers_add_up(const struct image *im) {
     CHECK(by_path <= 8);    // a sample's contributions are summed in float
 }
 
+static void test_sampler(const char *sampler) {
+    const struct job_options o = options_with(2);
+    struct image whole;
+    render_scene(sampler, &o, &whole);
+    threads_and_runs_give_the_same_bits(sampler, &whole);
+    crops_give_the_same_bits(sampler, &whole);
+    layers_do_not_change_the_picture(sampler, &whole);
+    layers_add_up(&whole);
+    image_finish(&whole);
+}
+
 int main(void) {
     scene_folder_open();
-    for (const struct entry *const *s = samplers.entries; *s; s++) {
-        const struct job_options o = options_with(2);
-        struct image whole;
-        render_scene((*s)->name, &o, &whole);
-        threads_and_runs_give_the_same_bits((*s)->name, &whole);
-        crops_give_the_same_bits((*s)->name, &whole);
-        layers_do_not_change_the_picture((*s)->name, &whole);
-        layers_add_up(&whole);
-        image_finish(&whole);
-    }
+    for (const struct entry *const *s = samplers.entries; *s; s++)
+        test_sampler((*s)->name);
+    shading_samples = 3; // paths that share a first hit, and a sum
+    test_sampler("sobol");
+    shading_samples = 1;
     // These two draw the same numbers whatever the number of samples.
     stopping_gives_the_same_bits("independent", 2);
     stopping_gives_the_same_bits("sobol", 65);

@@ -39,21 +39,25 @@ static const struct room rooms[] = {
     {"cube of albedo 0.8, emitting 1", cube, 0.8, 1, "", 1.8, 5},
 };
 
-static void write_room(const struct room *r, char *text, size_t n) {
-    char shape[512], area[128] = "";
+static void write_room(const struct room *r, int paths, char *text, size_t n) {
+    char shape[512], area[128] = "", share[64] = "";
+    if (paths > 1)
+        snprintf(share, sizeof share, "<integer name='shading_samples' value='%d'/>", paths);
     if (r->emission > 0)
         snprintf(area, sizeof area,
                  "<emitter type='area'><rgb name='radiance' value='%g'/></emitter>", r->emission);
     snprintf(shape, sizeof shape, r->shape, r->albedo, area);
     snprintf(text, n,
-             "<scene version='3.0.0'><integrator type='path'/><sensor type='perspective'>"
-             "<float name='fov' value='100'/><film type='hdrfilm'>"
+             "<scene version='3.0.0'><integrator type='path'>%s</integrator>"
+             "<sensor type='perspective'><float name='fov' value='100'/><film type='hdrfilm'>"
              "<integer name='width' value='8'/><integer name='height' value='8'/>"
-             "<rfilter type='box'/></film></sensor>%s%s</scene>", shape, r->lights);
+             "<rfilter type='box'/></film></sensor>%s%s</scene>", share, shape, r->lights);
 }
 
 // The plain path tracer follows every path until its weight underflows, and has little variance.
-static void test_room(const struct room *r, const char *integrator, const char *sampler) {
+// paths: of each first hit.
+static void test_room(const struct room *r, const char *integrator, const char *sampler,
+                      int paths) {
     const bool simple = strcmp(integrator, "simple") == 0;
     const int spp = (simple ? 16 : 256) * (full_mode() ? 16 : 1);
     const struct job_options o = {.spp = spp, .variance = true, .seed = (uint32_t)ztable_count,
@@ -62,9 +66,10 @@ static void test_room(const struct room *r, const char *integrator, const char *
     char text[2048], name[96];
     struct render_result result;
     struct image im;
-    write_room(r, text, sizeof text);
+    write_room(r, paths, text, sizeof text);
     render_text(text, &o, &im, &result);
-    snprintf(name, sizeof name, "%s: %s, %s, %d spp", r->name, integrator, sampler, spp);
+    snprintf(name, sizeof name, "%s: %s, %s, %d x %d spp", r->name, integrator, sampler, spp,
+             paths);
     ztable_add(name, expected, measure(&im, 'G'), ulp_floor(expected, 1 + r->albedo / (1 - r->albedo)));
     CHECK(result.truncated == 0);
     image_finish(&im);
@@ -73,10 +78,13 @@ static void test_room(const struct room *r, const char *integrator, const char *
 int main(void) {
     const char *const methods[] = {"path", "simple", "direct"};
     scene_folder_open();
-    for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++)
+    for (size_t i = 0; i < sizeof rooms / sizeof *rooms; i++) {
         for (int j = 0; j < 3; j++)
             for (const struct entry *const *s = samplers.entries; *s; s++)
-                test_room(&rooms[i], methods[j], (*s)->name);
+                test_room(&rooms[i], methods[j], (*s)->name, 1);
+        for (const struct entry *const *s = samplers.entries; *s; s++)
+            test_room(&rooms[i], "path", (*s)->name, 3);
+    }
     scene_folder_close();
     ztable_finish(FALSE_ALARMS);
     return check_result();
