@@ -9,8 +9,8 @@ processor seconds (user and system, all threads; ours without loading), since ot
 machine stretches the first far more. Equal samples: both with their independent sampler, and
 Russian roulette from the edge on that the file names; relume once more from its own default on,
 which takes fewer rays. Equal error: time x relMSE, which is the time to a given relMSE where error
-falls as 1/N; relume with its own roulette and the better of sobol and lattice, Mitsuba llvm of
-independent and multijitter (an earlier roulette does not help it). The error is the mean of
+falls as 1/N; relume with its own roulette, the better of sobol and lattice, and of one or two paths from
+each first hit, Mitsuba llvm of independent and multijitter (an earlier roulette does not help it). The error is the mean of
 (picture - A) (picture - B) over two independent references, so that their own noise drops out; both
 are Mitsuba's, each with 4 times the samples.
 """
@@ -48,8 +48,20 @@ def cpu_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
+def sharing_first_hits(scene, paths):
+    """A copy beside the scene whose samples are the mean of several paths."""
+    copy = Path(scene).with_name(f"shading_samples{paths}.xml")
+    opening = '<integrator type="$integrator">'
+    asked = f'<integer name="shading_samples" value="{paths}"/>'
+    copy.write_text(Path(scene).read_text().replace(opening, opening + asked, 1))
+    return str(copy)
+
+
 def relume(args, scene, size, spp, setting, seed, out):
     sampler, *names = setting
+    if TWO_PATHS in names:
+        names.remove(TWO_PATHS)
+        scene = sharing_first_hits(scene, 2)
     command = [args.relume, "render", scene, "-o", out, "--size", size, "--spp", str(spp),
                "--sampler", sampler, "--seed", str(seed), "--quiet", "--json"]
     for name in names:
@@ -74,9 +86,11 @@ def mitsuba(scene, variant, size, spp, sampler, seed, out, passes=1):
 PEERS = (("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"),
          ("llvm_ad_rgb", "multijitter"))
 OWN_ROULETTE = "rr_depth=3"
+TWO_PATHS = "two paths"
 EQUAL = ("independent",)
 EARLIER = ("independent", OWN_ROULETTE)
-BEST = (("sobol", OWN_ROULETTE), ("lattice", OWN_ROULETTE))
+BEST = tuple((sampler, OWN_ROULETTE, *more) for sampler in ("sobol", "lattice")
+             for more in ((), (TWO_PATHS,)))
 
 
 def measure(args, scene, size, spp, folder):
