@@ -55,15 +55,11 @@ ROW_DEFINE_INT(row_int8, 8)
 ROW_DEFINE_INT(row_int4, 4)
 ROW_DEFINE_INT(row_int2, 2)
 
-// Each of four values for four lanes.
-ROW_INLINE float16 row_widen(float4 m) {
-    return (float16)(m.xxxx, m.yyyy, m.zzzz, m.wwww);
-}
-
-ROW_INLINE float4 row_means(global const uchar *p, uint v, int4 q) {
+// Each of four means for four lanes.
+ROW_INLINE float16 row_means(global const uchar *p, uint v, int4 q) {
     const float2 h = row_head(p, v / TILE_VECTORS);
-    return h.x + h.y * convert_float4(q);
+    const float4 m = h.x + h.y * convert_float4(q);
+    return m.s0000111122223333;
 }
-ROW_DEFINE(row_half8, row_widen(row_means(p, v, convert_int4(vload4(v, p + 16)))))
-ROW_DEFINE(row_half4,
-           row_widen(row_means(p, v, convert_int4(vload4(v % 6, p + 16)) >> (int)(v / 6 * 4) & 15)))
+ROW_DEFINE(row_half8, row_means(p, v, convert_int4(vload4(v, p + 16))))
+ROW_DEFINE(row_half4, row_means(p, v, convert_int4(vload4(v % 6, p + 16)) >> (int)(v / 6 * 4) & 15))

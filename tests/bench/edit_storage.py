@@ -22,7 +22,7 @@ def run(words):
     done = subprocess.run(words, capture_output=True, text=True)
     if done.returncode:
         sys.exit("%s\n%s" % (" ".join(words), done.stderr))
-    return json.loads(done.stdout.splitlines()[-1]) if "--json" in words else done.stdout
+    return json.loads(done.stdout) if "--json" in words else done.stdout
 
 
 class Edits:

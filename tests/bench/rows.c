@@ -73,7 +73,8 @@ static void fill(struct bench *b, const double share[ROW_WAYS], uint64_t tiles) 
         b->weights[i] = 1 / (float)(i + 1);
 }
 
-static void measure(const char *name, const double share[ROW_WAYS], uint64_t rows, double limit) {
+static void measure(const char *name, const double share[ROW_WAYS], uint64_t rows) {
+    const double limit = measure_bandwidth(0); // beside it, since machines change
     struct bench b = {.entries = NULL};
     double times[2][REPEATS];
     fill(&b, share, rows / COEFFICIENTS);
@@ -102,7 +103,6 @@ static void measure(const char *name, const double share[ROW_WAYS], uint64_t row
 
 int main(int argc, char **argv) {
     const uint64_t rows = argc > 1 ? strtoull(argv[1], NULL, 10) : 1 << 20;
-    const double limit = measure_bandwidth(0);
     double mixture[ROW_WAYS] = {0.45, 0, 0, 0, 0.15, 0.2, 0.2}, all = 0;
     char *at = argc > 2 ? argv[2] : NULL;
     for (int way = 0; way < ROW_WAYS && at; way++) {
@@ -113,12 +113,11 @@ int main(int argc, char **argv) {
         all += mixture[way];
     for (int way = 0; way < ROW_WAYS; way++)
         mixture[way] /= all;
-    printf("reading %.1f GB/s\n", limit * 1e-9);
-    measure("mixture", mixture, rows, limit);
+    measure("mixture", mixture, rows);
     for (int way = 1; way < ROW_WAYS; way++) {
         double one[ROW_WAYS] = {0};
         one[way] = 1;
-        measure(row_ways[way]->name, one, rows, limit);
+        measure(row_ways[way]->name, one, rows);
     }
     return 0;
 }

@@ -57,6 +57,29 @@ expect 0 "$relume" tensor crop 1e-3.safetensors -o part.safetensors --crop 2,2,9
 expect 0 "$relume" tensor requantise 1e-3.safetensors -o again.safetensors --budget relmse=1e-2 --no-halves
 [ "$(size again.safetensors)" -lt "$(size 1e-3.safetensors)" ] || fail "1e-2 is larger than 1e-3"
 
+# As well at any brightness; not where a value is not finite.
+for factor in 1e-30 1e30 nan; do
+    python3 - t.safetensors scaled.safetensors $factor <<'END'
+import array, json, struct, sys
+data = bytearray(open(sys.argv[1], "rb").read())
+n, = struct.unpack("<Q", data[:8])
+for name, entry in json.loads(data[8:8 + n]).items():
+    if name.endswith("values") or name.endswith("halves") or name == "fixed":
+        a, b = (8 + n + at for at in entry["data_offsets"])
+        values = array.array("f", data[a:b])
+        data[a:b] = array.array("f", [v * float(sys.argv[3]) for v in values]).tobytes()
+open(sys.argv[2], "wb").write(data)
+END
+    [ $factor = nan ] && break
+    expect 0 "$relume" tensor requantise scaled.safetensors -o small.safetensors --budget relmse=1e-4
+    expect 0 "$relume" edit scaled.safetensors -o scaled.exr
+    expect 0 "$relume" edit small.safetensors -o small-scaled.exr
+    expect 0 "$relume" compare scaled.exr small-scaled.exr --fail-above relmse=1e-4
+    [ "$(size small.safetensors)" -lt "$(($(size scaled.safetensors) / 3))" ] || fail "$factor: not smaller"
+done
+expect 1 "$relume" tensor requantise scaled.safetensors -o u.safetensors --budget relmse=1e-4
+contains "$err" "not finite"
+
 # In its own place.
 expect 0 "$relume" tensor requantise t.safetensors -o t.safetensors --budget relmse=1e-3
 expect 0 "$relume" edit t.safetensors -o own.exr
