@@ -15,7 +15,8 @@ struct replay_values {
 // Entries of an option table; `member` is the struct replay_values among the values.
 #define REPLAY_OPTIONS(values, member)                                                             \
     {.name = "variance", .type = OPTION_FLAG, .offset = offsetof(values, member.variance),         \
-     .help = "write what the tensor's noise makes of the picture as layer `variance`"},            \
+     .help = "write what the tensor's noise makes of the picture as layer `variance`\n"           \
+             "(no error of bins or triangles of the sky: `relume verify` tells all)"},              \
     {.name = "no-device", .type = OPTION_FLAG, .offset = offsetof(values, member.no_device),       \
      .help = "do without OpenCL"},                                                                 \
     {.name = "time", .type = OPTION_FLAG, .offset = offsetof(values, member.time),                 \
