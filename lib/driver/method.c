@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/method.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 // Where the innermost integrator is held.
@@ -17,7 +18,8 @@ static size_t size_of(enum param_type type) {
     return type == PARAM_BOOL ? sizeof(bool) : type == PARAM_INT || type == PARAM_CHOICE ? sizeof(int) : 0;
 }
 
-// The same object as another type, which has parameters of the same names.
+// The same object as another type: parameters of the same names are kept, other numbers are what a
+// file that does not name them gives.
 static struct object *as(const struct object *o, const struct entry *type, struct arena *arena) {
     struct object *out = arena_alloc(arena, sizeof *out);
     *out = *o;
@@ -28,6 +30,10 @@ static struct object *as(const struct object *o, const struct entry *type, struc
         if (from && from->type == p->type)
             memcpy((char *)out->data + p->offset, (const char *)o->data + from->offset,
                    size_of(p->type));
+        else if (p->type == PARAM_INT) {
+            const int value = (int)strtol(p->def, NULL, 10);
+            memcpy((char *)out->data + p->offset, &value, sizeof value);
+        }
     }
     return out;
 }

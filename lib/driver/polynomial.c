@@ -166,7 +166,7 @@ static void make_response(struct polynomial *p, const struct polynomial_options 
 // Path tracing, with what the scene says of it where it asks for that.
 static void make_integrator(struct polynomial *p, const struct polynomial_options *o) {
     const struct object *given = p->job.scene->integrator;
-    p->path = (struct path){.max_depth = -1, .rr_depth = 3};
+    p->path = (struct path){.max_depth = -1, .rr_depth = 3, .shading_samples = 1};
     if (given->type == &integrator_path.entry)
         p->path = *(const struct path *)given->data;
     if (o->tail != TAIL_FROZEN)
