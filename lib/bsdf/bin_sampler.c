@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bsdf/bin_sampler.h"
 
-#include "curve/arc.h"
-
 static const double COSINE_SHARE = 0.25;
 
 // Whether a marginal stands for a curve of the form (and not for a fixed factor, or for none).
@@ -66,18 +64,18 @@ void bin_sampler_init(struct bin_sampler *s, const struct form *f, struct arena 
 }
 
 // The part of a strategy's first variable that wo can reach: theta_h is at most half way between wo
-// and the horizon.
-static double reach(const struct curve_strategy *s, struct direction wo) {
+// and the horizon, and sin^2 of that is (1 + sin theta_o) / 2.
+static double reach(const struct curve_strategy *s, double sine) {
     if (s->kind != STRATEGY_POLAR || s->first.gamma.kind != GAMMA_THETA_H)
         return 1;
-    const double theta_o = arc_quarter(sqrt(wo.x * wo.x + wo.y * wo.y), wo.z > 0 ? wo.z : 0);
-    return curve_marginal_cdf(&s->first, s->kind, 0.5 * (theta_o + CURVE_END));
+    return curve_marginal_cdf(&s->first, 0.5 + 0.5 * sine);
 }
 
 struct bin_view bin_sampler_view(const struct bin_sampler *s, struct direction wo) {
     struct bin_view v = {.wo = wo};
+    const double sine = fmin(sqrt(wo.x * wo.x + wo.y * wo.y), 1);
     for (uint32_t i = 0; i < s->count; i++)
-        v.reach[i] = reach(&s->strategy[i], wo);
+        v.reach[i] = reach(&s->strategy[i], sine);
     return v;
 }
 

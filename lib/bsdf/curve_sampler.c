@@ -142,14 +142,19 @@ static double marginal_sample(const struct curve_marginal *m, double u) {
     return m->edges[lo] + t * (m->edges[lo + 1] - m->edges[lo]);
 }
 
-double curve_marginal_cdf(const struct curve_marginal *m, enum curve_strategy_kind kind,
-                          double gamma) {
-    const uint32_t i = basis_interval(m->basis, gamma);
-    const double x = coordinate(kind, m->gamma.kind, gamma);
-    const double width = m->edges[i + 1] - m->edges[i];
-    const double t = width > 0 ? fmin(fmax((x - m->edges[i]) / width, 0), 1) : 0;
-    const double a = m->ends[i][0], b = m->ends[i][1];
-    return fmin(m->cdf[i] + (a + 0.5 * t * (b - a)) * t * width, 1);
+double curve_marginal_cdf(const struct curve_marginal *m, double x) {
+    uint32_t lo = 0, hi = basis_intervals(m->basis); // invariant: edges[lo] <= x, hi is beyond
+    while (hi - lo > 1) {
+        const uint32_t middle = lo + (hi - lo) / 2;
+        if (m->edges[middle] <= x)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    const double width = m->edges[lo + 1] - m->edges[lo];
+    const double t = width > 0 ? fmin(fmax((x - m->edges[lo]) / width, 0), 1) : 0;
+    const double a = m->ends[lo][0], b = m->ends[lo][1];
+    return fmin(m->cdf[lo] + (a + 0.5 * t * (b - a)) * t * width, 1);
 }
 
 void curve_marginal_level(struct curve_marginal *m, struct arena *arena) {

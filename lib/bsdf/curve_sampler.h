@@ -59,9 +59,8 @@ struct curve_sampler {
     struct curve_strategy strategy[CURVE_STRATEGIES]; // the cosine first
 };
 
-// What a marginal has up to gamma; it has a basis.
-double curve_marginal_cdf(const struct curve_marginal *m, enum curve_strategy_kind kind,
-                          double gamma);
+// What a marginal that has a basis holds up to the coordinate x.
+double curve_marginal_cdf(const struct curve_marginal *m, double x);
 // Gives every interval the same probability, even inside.
 void curve_marginal_level(struct curve_marginal *m, struct arena *arena);
 

@@ -7,7 +7,7 @@
 #include "math/hash.h"
 #include "math/quadrature.h"
 
-enum { NODES = 8, SAMPLES = 1 << 16, GRID = 64, VISITS = 192, DIMENSIONS = 5 };
+enum { NODES = 8, SAMPLES = 1 << 16, GRID = 64, VISITS = 128, DIMENSIONS = 5 };
 
 static const struct basis *basis_of(const struct form *f, uint32_t term, enum form_slot_name slot) {
     const struct form_slot *s = &f->term[term].slots[slot];

@@ -126,6 +126,7 @@ static void weigh(struct edit_classes *c, const struct edit_plan *p,
 }
 
 bool edit_classes_init(struct edit_classes *c, const struct edit_plan *p,
+                       double *const (*albedos)[FORM_TERMS],
                        const double (*passed)[CURVE_CHANNELS], const char *const *texts, size_t count) {
     *c = (struct edit_classes){.count = 0};
     c->of = arena_alloc(&c->arena, p->count * sizeof *c->of);
@@ -143,7 +144,7 @@ bool edit_classes_init(struct edit_classes *c, const struct edit_plan *p,
     }
     for (uint32_t i = 0; i < p->count; i++)
         if (c->names[c->of[i]])
-            edit_plan_albedo(p, i, c->base[i]);
+            edit_plan_albedo(p, i, albedos[i], c->base[i]);
     for (uint32_t g = 0; g < c->count; g++)
         for (int k = 0; k < CURVE_CHANNELS && c->names[g]; k++)
             weigh(c, p, passed, g, k);

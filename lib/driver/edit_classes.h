@@ -24,9 +24,11 @@ struct edit_classes {
 };
 
 // texts: "NAME=OBJECT,OBJECT,..." or "N", which leaves N classes: the objects that `passed` says pass
-// most light on alone, and all others together. passed: light that each passes on at later hops.
+// most light on alone, and all others together. albedos: of all objects; passed: light that each
+// passes on at later hops.
 // false after an error message.
 bool edit_classes_init(struct edit_classes *c, const struct edit_plan *plan,
+                       double *const (*albedos)[FORM_TERMS],
                        const double (*passed)[CURVE_CHANNELS], const char *const *texts, size_t count);
 void edit_classes_finish(struct edit_classes *c);
 

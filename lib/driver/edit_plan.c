@@ -6,7 +6,6 @@
 #include "base/log.h"
 #include "bsdf/editable_convert.h"
 #include "bsdf/editable_data.h"
-#include "bsdf/equivalent_albedo.h"
 #include "curve/form_albedo.h"
 #include "curve/form_json.h"
 #include "curve/parameters.h"
@@ -174,20 +173,16 @@ void edit_plan_weights(const struct edit_plan *p, uint32_t object, uint32_t term
             }
 }
 
-void edit_plan_albedo(const struct edit_plan *p, uint32_t object, double albedo[CURVE_CHANNELS]) {
+void edit_plan_albedo(const struct edit_plan *p, uint32_t object, double *const e[FORM_TERMS],
+                      double albedo[CURVE_CHANNELS]) {
     const struct edit_object *o = &p->objects[object];
     for (int k = 0; k < CURVE_CHANNELS; k++)
         albedo[k] = 0;
     for (uint32_t t = 0; t < o->form->terms; t++) {
-        struct tensor_block b;
         double value[CURVE_CHANNELS];
-        edit_plan_block(p, object, t, &b);
-        double *e = mem_array((size_t)CURVE_CHANNELS * b.coefficients, sizeof *e);
-        equivalent_albedo(o->form, t, e);
-        form_term_albedo(o->form, t, e, value);
+        form_term_albedo(o->form, t, e[t], value);
         for (int k = 0; k < CURVE_CHANNELS; k++)
             albedo[k] += o->share[t][k] * value[k];
-        mem_free(e);
     }
 }
 

@@ -53,8 +53,10 @@ static inline const struct basis *edit_basis(const struct form *f, const struct 
 void edit_plan_block(const struct edit_plan *p, uint32_t object, uint32_t term,
                      struct tensor_block *b);
 
-// An object's albedo as its factor is at run time (replay/edit_weights.h), by channel.
-void edit_plan_albedo(const struct edit_plan *p, uint32_t object, double albedo[CURVE_CHANNELS]);
+// An object's albedo as its factor is at run time (replay/edit_weights.h), by channel, from those of its
+// terms' coefficients (bsdf/equivalent_albedo.h).
+void edit_plan_albedo(const struct edit_plan *p, uint32_t object, double *const e[FORM_TERMS],
+                      double albedo[CURVE_CHANNELS]);
 
 // The weights of the form as it is, coefficient by coefficient and channel: f_q c_A c_B.
 void edit_plan_weights(const struct edit_plan *p, uint32_t object, uint32_t term, float *weights);

@@ -4,8 +4,10 @@
 
 #include <string.h>
 
+#include "base/thread.h"
 #include "bsdf/diffuse.h"
 #include "bsdf/editable_data.h"
+#include "driver/polynomial_describe.h"
 #include "driver/polynomial_pilot.h"
 
 const char *const polynomial_tails[] = {"none", "frozen", "geometric", NULL};
@@ -137,7 +139,7 @@ static void choose_later(struct polynomial *p, uint32_t object, enum polynomial_
     o->scale = spectrum_rgb((float)b[0], (float)b[1], (float)b[2]);
     if (later != LATER_KEPT)
         return;
-    edit_plan_albedo(&p->plan, object, albedo);
+    edit_plan_albedo(&p->plan, object, p->albedos[object], albedo);
     o->keeps = has_shape(&p->plan.objects[object], albedo);
     if (o->keeps)
         o->scale = spectrum_rgb((float)(b[0] / albedo[0]), (float)(b[1] / albedo[1]),
@@ -184,8 +186,9 @@ static bool make_classes(struct polynomial *p, const struct polynomial_options *
     double(*passed)[CURVE_CHANNELS] = mem_array(p->plan.count, sizeof *passed);
     if (o->group_count > 0)
         polynomial_passed(p, o->bounces, passed);
-    const bool done = edit_classes_init(&p->classes, &p->plan, (const double(*)[CURVE_CHANNELS])passed,
-                                        o->group, o->group_count);
+    const bool done = edit_classes_init(&p->classes, &p->plan, p->albedos,
+                                        (const double(*)[CURVE_CHANNELS])passed, o->group,
+                                        o->group_count);
     mem_free(passed);
     return done;
 }
@@ -210,6 +213,8 @@ bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
         find_objects(p);
     if (done)
         make_integrator(p, o);
+    if (done)
+        polynomial_albedos(p, o->job.threads > 0 ? o->job.threads : thread_default_count());
     if (done && all_are_found(p) && make_classes(p, o) &&
         edit_groups_init(&p->groups, &p->plan, &p->classes, o->series, o->bounces)) {
         make_response(p, o);

@@ -4,7 +4,7 @@
 
 #include "driver/precompute_polynomial.h"
 
-// Finds the equivalent albedos of all terms, which the metadata tell.
+// Finds the equivalent albedos of all terms, which the metadata tell and later hops are scaled by.
 void polynomial_albedos(struct polynomial *p, int threads);
 
 // Of samples [first, end); quantum: of a tensor that keeps its sums.

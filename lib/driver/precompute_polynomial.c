@@ -281,7 +281,6 @@ static bool resume_and_run(struct run *r) {
     const struct polynomial_options *o = r->options;
     struct tensor_file *base = NULL;
     uint32_t next = r->first;
-    polynomial_albedos(r->p, threads_of(r));
     struct json *meta = polynomial_describe(r->p, o, r->first, r->end, r->quantum);
     const bool good = !o->resume || polynomial_resume(o, meta, r->first, &base, &next);
     json_destroy(meta);

@@ -69,7 +69,7 @@ bool precompute_polynomial(const struct polynomial_options *o, struct polynomial
 struct polynomial {
     struct job job;
     struct edit_plan plan;
-    double *(*albedos)[FORM_TERMS]; // polynomial_albedos; or NULL
+    double *(*albedos)[FORM_TERMS]; // of terms (driver/polynomial_describe.h)
     struct edit_classes classes;
     struct edit_groups groups;
     struct symbolic response, survey;

@@ -74,7 +74,7 @@ class Bench:
 
     def steps(self, a, b):
         for name in (a, b):
-            call(self.relume, "tonemap", self.at(name), "-o", self.at(name + ".png"), "-q")
+            call(self.relume, "tonemap", self.at(name), "-o", self.at(name + ".png"))
         return max(abs(x - y) for x, y in zip(png(self.at(a + ".png")), png(self.at(b + ".png"))))
 
 
