@@ -50,9 +50,12 @@ struct roughness {
     bool textured, smooth;
 };
 
-// alpha = sqrt(roughness) unless "remaproughness" is false (pbrt's RoughnessToAlpha).
-static bool read_roughness(struct pbrt *p, struct pbrt_call *c, struct roughness *out) {
-    static const char *const names[3] = {"roughness", "uroughness", "vroughness"};
+static const char *const plain_roughness[3] = {"roughness", "uroughness", "vroughness"};
+
+// alpha = sqrt(roughness) unless "remaproughness" is false (pbrt's RoughnessToAlpha). names: of both
+// directions, of u, of v.
+static bool read_roughness(struct pbrt *p, struct pbrt_call *c, const char *const names[3],
+                           struct roughness *out) {
     bool good = true;
     double v[3] = {0, -1, -1};
     const bool remap = pbrt_bool(c, "remaproughness", true, &good);
@@ -71,15 +74,15 @@ static bool read_roughness(struct pbrt *p, struct pbrt_call *c, struct roughness
     return good;
 }
 
-static bool put_roughness(struct pbrt *p, struct pbrt_call *c, const struct roughness *r,
-                          struct xml_node *out) {
+static bool put_roughness(struct pbrt *p, struct pbrt_call *c, const char *const names[3],
+                          const struct roughness *r, struct xml_node *out) {
     tree_text(p->r, out, "string", "distribution", "ggx");
     if (r->textured) {
         bool good = true;
-        const bool single = pbrt_find(c, "texture|float", "roughness", &good) != NULL;
-        return single ? pbrt_put_texture(p, c, "roughness", out, "alpha", true)
-                      : pbrt_put_texture(p, c, "uroughness", out, "alpha_u", true) &&
-                            pbrt_put_texture(p, c, "vroughness", out, "alpha_v", true);
+        const bool single = pbrt_find(c, "texture|float", names[0], &good) != NULL;
+        return single ? pbrt_put_texture(p, c, names[0], out, "alpha", true)
+                      : pbrt_put_texture(p, c, names[1], out, "alpha_u", true) &&
+                            pbrt_put_texture(p, c, names[2], out, "alpha_v", true);
     }
     if (r->u == r->v) {
         tree_number(p->r, out, "alpha", r->u);
@@ -91,7 +94,7 @@ static bool put_roughness(struct pbrt *p, struct pbrt_call *c, const struct roug
 }
 
 // Indices of glasses at 589 nm, of pbrt's named spectra.
-static bool read_eta(struct pbrt *p, struct pbrt_call *c, double otherwise, double *eta) {
+static bool read_eta(struct pbrt *p, struct pbrt_call *c, const char *name, double *eta) {
     static const struct {
         const char *name;
         double eta;
@@ -100,8 +103,8 @@ static bool read_eta(struct pbrt *p, struct pbrt_call *c, double otherwise, doub
                    {"glass-F11", 1.6206},   {"glass-SF5", 1.6727},  {"glass-SF10", 1.7283},
                    {"glass-SF11", 1.7847}};
     bool good = true;
-    const struct pbrt_param *a = pbrt_find(c, "float|spectrum", "eta", &good);
-    *eta = a && a->numbers && strcmp(a->type, "float") == 0 ? a->numbers[0] : otherwise;
+    const struct pbrt_param *a = pbrt_find(c, "float|spectrum", name, &good);
+    *eta = a && a->numbers && strcmp(a->type, "float") == 0 ? a->numbers[0] : 1.5;
     if (a && a->texts) {
         for (size_t i = 0; i < sizeof glasses / sizeof *glasses; i++)
             if (strcmp(glasses[i].name, a->texts[0]) == 0) {
@@ -127,7 +130,7 @@ static bool diffuse(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
 static bool coateddiffuse(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
     struct roughness r;
     double eta;
-    if (!read_roughness(p, c, &r) || !read_eta(p, c, 1.5, &eta))
+    if (!read_roughness(p, c, plain_roughness, &r) || !read_eta(p, c, "eta", &eta))
         return false;
     if (r.textured || r.u != r.v)
         pbrt_warn(p, c->at, "the roughness of a coat is one number: that of u");
@@ -164,15 +167,16 @@ static void put_reflectance(struct pbrt *p, const double r[3], struct xml_node *
     tree_triple(p->r, out, "rgb", "k", k);
 }
 
-static bool put_metal(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
+static bool put_metal(struct pbrt *p, struct pbrt_call *c, const char *eta_name,
+                      const char *k_name, struct xml_node *out) {
     bool good = true;
     double v[3];
     if (pbrt_read_colour(p, c, "reflectance", PBRT_REFLECTANCE, v, &good)) {
         put_reflectance(p, v, out);
         return true;
     }
-    const struct pbrt_param *eta = pbrt_find(c, "rgb|spectrum", "eta", &good);
-    const struct pbrt_param *k = pbrt_find(c, "rgb|spectrum", "k", &good);
+    const struct pbrt_param *eta = pbrt_find(c, "rgb|spectrum", eta_name, &good);
+    const struct pbrt_param *k = pbrt_find(c, "rgb|spectrum", k_name, &good);
     const char *name = eta ? metal_name(p, eta) : "Cu";
     if (!good)
         return false;
@@ -180,10 +184,10 @@ static bool put_metal(struct pbrt *p, struct pbrt_call *c, struct xml_node *out)
         tree_text(p->r, out, "string", "material", name ? name : "Cu");
         return true;
     }
-    if (!pbrt_read_colour(p, c, "eta", PBRT_UNBOUNDED, v, &good))
+    if (!pbrt_read_colour(p, c, eta_name, PBRT_UNBOUNDED, v, &good))
         return false;
     tree_triple(p->r, out, "rgb", "eta", v);
-    if (!pbrt_read_colour(p, c, "k", PBRT_UNBOUNDED, v, &good))
+    if (!pbrt_read_colour(p, c, k_name, PBRT_UNBOUNDED, v, &good))
         return false;
     tree_triple(p->r, out, "rgb", "k", v);
     return true;
@@ -191,16 +195,49 @@ static bool put_metal(struct pbrt *p, struct pbrt_call *c, struct xml_node *out)
 
 static bool conductor(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
     struct roughness r;
-    if (!read_roughness(p, c, &r))
+    if (!read_roughness(p, c, plain_roughness, &r))
         return false;
     struct xml_node *base = opaque(p, c, out, r.smooth ? "conductor" : "roughconductor");
-    return base && put_metal(p, c, base) && (r.smooth || put_roughness(p, c, &r, base));
+    return base && put_metal(p, c, "eta", "k", base) && (r.smooth || put_roughness(p, c, plain_roughness, &r, base));
+}
+
+static void put_coat(struct pbrt *p, struct pbrt_call *c, const struct roughness *r, double eta,
+                     struct xml_node *out) {
+    if (r->textured || r->u != r->v)
+        pbrt_warn(p, c->at, "the roughness of a coat is one number: that of u");
+    pbrt_set_type(p, out, "coated");
+    tree_number(p->r, out, "int_ior", eta);
+    tree_number(p->r, out, "ext_ior", 1);
+    if (!r->smooth)
+        tree_number(p->r, out, "alpha", r->u);
+}
+
+// The metal meets the coat's index, not that of air.
+static bool coatedconductor(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
+    static const char *const coat_names[3] = {"interface.roughness", "interface.uroughness",
+                                              "interface.vroughness"};
+    static const char *const metal_names[3] = {"conductor.roughness", "conductor.uroughness",
+                                               "conductor.vroughness"};
+    struct roughness coat, metal;
+    double eta;
+    if (!read_roughness(p, c, coat_names, &coat) || !read_roughness(p, c, metal_names, &metal) ||
+        !read_eta(p, c, "interface.eta", &eta))
+        return false;
+    struct xml_node *layers = perturbed(p, c, inside(p, c, out, "twosided"));
+    if (!layers)
+        return false;
+    put_coat(p, c, &coat, eta, layers);
+    struct xml_node *base = pbrt_add(p, layers, "bsdf", metal.smooth ? "conductor" : "roughconductor",
+                                     NULL, c->at);
+    tree_number(p->r, base, "ext_eta", eta);
+    return put_metal(p, c, "conductor.eta", "conductor.k", base) &&
+           (metal.smooth || put_roughness(p, c, metal_names, &metal, base));
 }
 
 static bool dielectric(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
     struct roughness r;
     double eta;
-    if (!read_roughness(p, c, &r) || !read_eta(p, c, 1.5, &eta))
+    if (!read_roughness(p, c, plain_roughness, &r) || !read_eta(p, c, "eta", &eta))
         return false;
     struct xml_node *base = perturbed(p, c, out);
     if (!base)
@@ -208,12 +245,12 @@ static bool dielectric(struct pbrt *p, struct pbrt_call *c, struct xml_node *out
     pbrt_set_type(p, base, r.smooth ? "dielectric" : "roughdielectric");
     tree_number(p->r, base, "int_ior", eta);
     tree_number(p->r, base, "ext_ior", 1);
-    return r.smooth || put_roughness(p, c, &r, base);
+    return r.smooth || put_roughness(p, c, plain_roughness, &r, base);
 }
 
 static bool thindielectric(struct pbrt *p, struct pbrt_call *c, struct xml_node *out) {
     double eta;
-    struct xml_node *base = read_eta(p, c, 1.5, &eta) ? perturbed(p, c, out) : NULL;
+    struct xml_node *base = read_eta(p, c, "eta", &eta) ? perturbed(p, c, out) : NULL;
     if (!base)
         return false;
     pbrt_set_type(p, base, "thindielectric");
@@ -290,6 +327,8 @@ const struct pbrt_row pbrt_materials[] = {
      "coat: nothing", coateddiffuse},
     {"conductor", "conductor or roughconductor (ggx), twosided; alpha = sqrt(roughness) where it is "
      "remapped", conductor},
+    {"coatedconductor", "coated over conductor or roughconductor, twosided; thickness and albedo of "
+     "the coat, and what is reflected to and fro inside it: nothing", coatedconductor},
     {"dielectric", "dielectric or roughdielectric; named glasses have one index", dielectric},
     {"thindielectric", "thindielectric", thindielectric},
     {"diffusetransmission", "principledthin: diff_trans", diffusetransmission},
@@ -297,7 +336,6 @@ const struct pbrt_row pbrt_materials[] = {
     {"measured", "measured", measured},
     {"interface", "null", none},
     {"", "null", none},
-    {"coatedconductor", "refused", NULL},
     {"subsurface", "refused", NULL},
     {"hair", "refused", NULL},
     {0},

@@ -73,6 +73,32 @@ static void gives_parameters(void) {
     scene_destroy(s);
 }
 
+// A coat of 1.4 over gold: the metal meets the coat's index; alpha is the root of a roughness.
+static void coats_metals(void) {
+    struct scene *s = read_pbrt(
+        HEAD "Material \"coatedconductor\" \"spectrum conductor.eta\" \"metal-Au-eta\"\n"
+        "\"spectrum conductor.k\" \"metal-Au-k\" \"float conductor.roughness\" 0.09\n"
+        "\"float interface.eta\" 1.4 \"float interface.roughness\" 0.04\nShape \"sphere\"\n"
+        "Material \"coatedconductor\" \"rgb reflectance\" [ 0.2 0.5 0.8 ]\nShape \"sphere\"");
+    CHECK(s && s->shape_count == 2);
+    if (!s)
+        return;
+    const struct object *coat = PARAM(const struct object *, s->shapes[0].bsdf, "front");
+    CHECK(strcmp(coat->type->name, "coated") == 0);
+    CHECK_NEAR(PARAM(float, coat, "int_ior"), 1.4, 1e-6);
+    CHECK_NEAR(PARAM(struct texture_ref, coat, "alpha").value[0], 0.2, 1e-6);
+    const struct object *metal = PARAM(const struct object *, coat, "bsdf");
+    CHECK(strcmp(metal->type->name, "roughconductor") == 0);
+    CHECK_NEAR(PARAM(struct texture_ref, metal, "alpha").value[0], 0.3, 1e-6);
+    CHECK_NEAR(PARAM(float, metal, "ext_eta"), 1.4, 1e-6);
+    const struct object *smooth = PARAM(const struct object *, s->shapes[1].bsdf, "front");
+    CHECK_NEAR(PARAM(float, smooth, "int_ior"), 1.5, 1e-6);
+    CHECK(PARAM(struct texture_ref, smooth, "alpha").value[0] == 0);
+    metal = PARAM(const struct object *, smooth, "bsdf");
+    CHECK(strcmp(metal->type->name, "conductor") == 0);
+    scene_destroy(s);
+}
+
 static void says_what_is_wrong(void) {
     static const struct {
         const char *text, *message;
@@ -125,6 +151,7 @@ int main(void) {
     places_objects();
     reads_meshes_and_colours();
     gives_parameters();
+    coats_metals();
     says_what_is_wrong();
     scene_folder_close();
     return check_result();
