@@ -13,19 +13,17 @@
 #include "bsdf/smooth.h"
 #include "math/fresnel.h"
 
-enum { NODES = 96 };
+enum { NODES = 96, LEVELS = 33, LEVEL_NODES = 48 };
 
 struct coated {
     const struct object *base;
     struct texture_ref weight;
     struct dielectric_index index;
     int distribution;
-    float alpha;
+    struct texture_ref alpha;
     // made by prepare
     float eta;
-    bool smooth;
-    struct microfacet facets;
-    struct boundary_table outside;
+    struct boundary_table *outside; // of that alpha; of a texture: by its root, from 0 to 1
 };
 
 struct coated_data {
@@ -33,7 +31,8 @@ struct coated_data {
     const struct coated *self;
     const struct closure *base; // NULL: black
     vec3 wo;
-    float weight;
+    float weight, alpha;
+    struct microfacet facets;
     float left;         // 1 - w R(cos_o)
     float quarter_area; // 1 / (4 sigma(wo)); 0: smooth
     float p_coat;
@@ -46,33 +45,60 @@ static const struct param params[] = {
     DIELECTRIC_INDEX_PARAMS(struct coated, index, "1.5"),
     {"distribution", PARAM_CHOICE, offsetof(struct coated, distribution), .def = "ggx", .unit = "",
      .help = "distribution of facet normals", .choices = roughness_distributions},
-    {"alpha", PARAM_FLOAT, offsetof(struct coated, alpha), .def = "0", .max = 1000, .unit = "",
-     .help = "roughness; below 1e-4 the coat is smooth"},
+    {"alpha", PARAM_TEXTURE_SCALAR, offsetof(struct coated, alpha), .def = "0", .max = 1000,
+     .unit = "", .help = "roughness, of a texture up to 1; below 1e-4 the coat is smooth"},
     PARAM_END,
 };
 
+static struct microfacet facets_of(const struct coated *self, float alpha) {
+    return microfacet_make((enum microfacet_type)self->distribution, alpha, alpha);
+}
+
+static bool is_smooth(float alpha) {
+    return alpha < MICROFACET_ALPHA_MIN;
+}
+
+static float alpha_of_level(int level) {
+    return maxf(sqr((float)level / (LEVELS - 1)), MICROFACET_ALPHA_MIN);
+}
+
 static bool prepare(struct object *object, struct arena *arena) {
     struct coated *self = object->data;
-    (void)arena;
+    const bool textured = self->alpha.texture != NULL;
+    const float alpha = self->alpha.value[0];
     self->eta = self->index.int_ior / self->index.ext_ior;
-    self->smooth = self->alpha < MICROFACET_ALPHA_MIN;
-    self->facets = microfacet_make((enum microfacet_type)self->distribution, self->alpha,
-                                   self->alpha);
-    if (!self->smooth)
-        boundary_tabulate(&self->facets, self->eta, NODES, &self->outside);
+    if (textured || !is_smooth(alpha))
+        self->outside = arena_alloc(arena, (textured ? LEVELS : 1) * sizeof *self->outside);
+    for (int i = 0; i < (textured ? LEVELS : self->outside ? 1 : 0); i++) {
+        const struct microfacet m = facets_of(self, textured ? alpha_of_level(i) : alpha);
+        boundary_tabulate(&m, self->eta, textured ? LEVEL_NODES : NODES, &self->outside[i]);
+    }
     return bsdf_check_nesting(object);
 }
 
 static uint32_t lobes(const void *data) {
     const struct coated *self = data;
-    return bsdf_lobes(self->base) | (self->smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_REFLECTION;
+    const uint32_t smooth = self->alpha.texture || !self->outside ? LOBE_SPECULAR : 0;
+    return bsdf_lobes(self->base) | smooth | (self->outside ? LOBE_GLOSSY : 0) | LOBE_REFLECTION;
+}
+
+static float alpha_at(const struct coated *self, const struct texture_point *at) {
+    const float alpha = texture_eval_scalar(&self->alpha, at);
+    return self->alpha.texture ? clampf(alpha, 0, 1) : alpha;
 }
 
 // R at a cosine above 0.
-static float reflected(const struct coated *self, float cosine) {
+static float reflected(const struct coated *self, float alpha, float cosine) {
     float cos_t;
-    return self->smooth ? fresnel_dielectric(cosine, self->eta, &cos_t)
-                        : boundary_lookup(self->outside.reflected, minf(cosine, 1));
+    if (is_smooth(alpha))
+        return fresnel_dielectric(cosine, self->eta, &cos_t);
+    cosine = minf(cosine, 1);
+    if (!self->alpha.texture)
+        return boundary_lookup(self->outside->reflected, cosine);
+    const float x = sqrtf(alpha) * (LEVELS - 1);
+    const int i = (int)minf(x, LEVELS - 2);
+    return lerpf(x - (float)i, boundary_lookup(self->outside[i].reflected, cosine),
+                 boundary_lookup(self->outside[i + 1].reflected, cosine));
 }
 
 // What the coat leaves the base of light between the two directions.
@@ -81,7 +107,7 @@ static float left_of(const struct coated_data *c, vec3 wi) {
     const float from_eye = seen_through ? c->left : 1;
     if (!lit_through)
         return from_eye;
-    return minf(from_eye, 1 - c->weight * reflected(c->self, cos_theta(wi)));
+    return minf(from_eye, 1 - c->weight * reflected(c->self, c->alpha, cos_theta(wi)));
 }
 
 static const struct closure *resolve(const void *data, const struct bsdf_point *point, vec3 wo,
@@ -92,13 +118,18 @@ static const struct closure *resolve(const void *data, const struct bsdf_point *
     if (w == 0 || (!base && !(cos_theta(wo) > 0)))
         return base;
     struct coated_data *c = closure_alloc(stack, &bsdf_coated, sizeof *c, base ? base->lobes : 0);
-    *c = (struct coated_data){c->head, self, base, wo, w, 1, 0, 0};
+    *c = (struct coated_data){.head = c->head, .self = self, .base = base, .wo = wo, .weight = w,
+                              .alpha = alpha_at(self, &point->at), .left = 1};
     if (!(cos_theta(wo) > 0))
         return &c->head;
-    c->head.lobes |= (self->smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_REFLECTION;
-    const float coat = w * reflected(self, cos_theta(wo));
+    const bool smooth = is_smooth(c->alpha);
+    c->head.lobes |= (smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_REFLECTION;
+    const float coat = w * reflected(self, c->alpha, cos_theta(wo));
     c->left = 1 - coat;
-    c->quarter_area = self->smooth ? 0 : 0.25f / microfacet_area(&self->facets, wo);
+    if (!smooth) {
+        c->facets = facets_of(self, c->alpha);
+        c->quarter_area = 0.25f / microfacet_area(&c->facets, wo);
+    }
     const float below = base ? c->left * spectrum_mean(closure_albedo(base)) : 0;
     c->p_coat = coat + below > 0 ? coat / (coat + below) : 1;
     return &c->head;
@@ -109,12 +140,11 @@ static float eval_coat(const struct coated_data *c, vec3 wi, float *pdf_sa) {
     *pdf_sa = 0;
     if (c->quarter_area == 0 || !(cos_theta(wi) > 0))
         return 0;
-    const struct coated *self = c->self;
     const vec3 h = normalize(c->wo + wi);
     float cos_t;
-    *pdf_sa = microfacet_D(&self->facets, h) * c->quarter_area;
-    return c->weight * fresnel_dielectric(dot(c->wo, h), self->eta, &cos_t) * *pdf_sa *
-           microfacet_G1(&self->facets, wi);
+    *pdf_sa = microfacet_D(&c->facets, h) * c->quarter_area;
+    return c->weight * fresnel_dielectric(dot(c->wo, h), c->self->eta, &cos_t) * *pdf_sa *
+           microfacet_G1(&c->facets, wi);
 }
 
 static spectrum eval(const struct closure *closure, vec3 wi, float *pdf_sa) {
@@ -149,7 +179,7 @@ static bool sample_coat(const struct coated_data *c, struct vec2 u2, struct bsdf
                                   LOBE_SPECULAR | LOBE_REFLECTION};
         return true;
     }
-    s->wi = normalize(reflect(c->wo, microfacet_sample(&c->self->facets, c->wo, u2)));
+    s->wi = normalize(reflect(c->wo, microfacet_sample(&c->facets, c->wo, u2)));
     s->lobe = LOBE_GLOSSY | LOBE_REFLECTION;
     if (!(cos_theta(s->wi) > 0)) // there the base alone may have a density
         return false;
@@ -177,7 +207,7 @@ static spectrum albedo(const struct closure *closure) {
 static spectrum null_transmittance(const void *data, const struct bsdf_point *point, vec3 wo) {
     const struct coated *self = data;
     const float w = clampf(texture_eval_scalar(&self->weight, &point->at), 0, 1);
-    return (1 - w * reflected(self, fabsf(cos_theta(wo)))) *
+    return (1 - w * reflected(self, alpha_at(self, &point->at), fabsf(cos_theta(wo)))) *
            bsdf_null_transmittance(self->base, point, wo);
 }
 

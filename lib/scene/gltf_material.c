@@ -41,16 +41,26 @@ static bool has_coat(const struct gltf_making *m) {
     return gltf_number(m->clearcoat, "clearcoatFactor", 0) > 0;
 }
 
+// alpha is the square of the roughness: a product of the texture with itself.
+static bool add_coat_roughness(const struct gltf_making *m, struct xml_node *node) {
+    const double root = gltf_number(m->clearcoat, "clearcoatRoughnessFactor", 0);
+    const struct json *info = gltf_texture_of(m, m->clearcoat, "clearcoatRoughnessTexture");
+    if (!info || root == 0) {
+        tree_number(m->r, node, "alpha", root * root);
+        return true;
+    }
+    struct xml_node *product = tree_add(m->r, node, "texture", "product", NULL);
+    xml_set(product, "name", "alpha", m->r->arena);
+    return gltf_add_number(m, product, "texture_0", root, info, "g") &&
+           gltf_add_number(m, product, "texture_1", root, info, "g");
+}
+
 // F0 = 0.04; without clearcoatNormalTexture a coat is flat also where its base is not.
 static bool add_coat(const struct gltf_making *m, struct xml_node *node) {
     const struct json *e = m->clearcoat;
-    if (json_get(e, "clearcoatRoughnessTexture"))
-        gltf_warn(m->g, "clearcoatRoughnessTexture is not used, its factor is");
     if (json_get(e, "clearcoatNormalTexture"))
         gltf_warn(m->g, "clearcoatNormalTexture is not used: coats have the normals of the mesh");
-    const double root = gltf_number(e, "clearcoatRoughnessFactor", 0);
-    tree_number(m->r, node, "alpha", root * root);
-    return gltf_add_number(m, node, "weight", gltf_number(e, "clearcoatFactor", 0),
+    return add_coat_roughness(m, node) && gltf_add_number(m, node, "weight", gltf_number(e, "clearcoatFactor", 0),
                            gltf_texture_of(m, e, "clearcoatTexture"), "r");
 }
 

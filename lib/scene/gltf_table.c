@@ -19,7 +19,7 @@ const struct gltf_row gltf_rows[] = {
     {"the same with KHR_materials_volume",
      "principled: spec_trans (a solid), and a homogeneous medium inside"},
     {"KHR_materials_clearcoat",
-     "coated: weight, alpha; textures of its roughness and normals: nothing"},
+     "coated: weight, alpha; the texture of its normals: nothing"},
     {"KHR_materials_sheen", "principled: sheen"},
     {"KHR_materials_anisotropy", "principled: anisotropic; a metal: roughconductor"},
     {"KHR_materials_dispersion", NULL},
