@@ -3,8 +3,10 @@
 //
 //     light_choice SCENE
 //
-// Prints, for each way of choosing, nanoseconds for a light sample and for the density of a hit,
-// and seconds and bytes of making it ready.
+// Prints, for each way of choosing, nanoseconds for a light sample and for the density of a hit, the
+// variance of what a sample says of the irradiance without shadows (relative to its square, the mean
+// over the points; a sample costs its time times this to equal error), and seconds and bytes of
+// making it ready.
 #include <stdio.h>
 #include <time.h>
 
@@ -12,7 +14,7 @@
 #include "driver/job.h"
 #include "math/hash.h"
 
-enum { WIDTH = 160, HEIGHT = 120, REPEATS = 8 };
+enum { WIDTH = 160, HEIGHT = 120, REPEATS = 8, VARIANCE_STRIDE = 16, VARIANCE_SAMPLES = 512 };
 
 struct places {
     struct light_place *at;
@@ -97,6 +99,30 @@ static double nodes_visited(const struct light_tree *t, const struct places *p) 
     return choices ? (double)nodes / (double)choices : 0;
 }
 
+static double variance_at(const struct world *w, const struct light_place *at, struct rng *rng) {
+    double sum = 0, squares = 0;
+    for (int i = 0; i < VARIANCE_SAMPLES; i++) {
+        struct light_sample l;
+        uint32_t light;
+        const float u1 = rng_float(rng);
+        const struct vec2 u2 = {rng_float(rng), rng_float(rng)};
+        if (!world_sample_light(w, at, u1, u2, &light, &l))
+            continue;
+        const double e = (double)(maxf(dot(l.wi, at->n), 0) / l.pdf_sa * spectrum_mean(l.emission));
+        sum += e;
+        squares += e * e;
+    }
+    return sum > 0 ? VARIANCE_SAMPLES * squares / (sum * sum) - 1 : 0;
+}
+
+static double mean_variance(const struct world *w, const struct places *p) {
+    struct rng rng = {4};
+    double sum = 0;
+    for (int i = 0; i < p->count; i += VARIANCE_STRIDE)
+        sum += variance_at(w, &p->at[i], &rng);
+    return sum / ((double)p->count / VARIANCE_STRIDE);
+}
+
 int main(int argc, char **argv) {
     if (argc != 2) {
         fprintf(stderr, "usage: light_choice SCENE\n");
@@ -117,8 +143,8 @@ int main(int argc, char **argv) {
         const double ready = cpu_seconds() - start;
         const double sample = time_samples(job.world, &p, hits, found);
         const double density = time_densities(job.world, &p, hits, found);
-        printf("  %-8s %6.0f ns a sample, %6.0f ns a density, ready in %.3f s, %zu bytes",
-               light_choice_modes[mode], sample, density, ready,
+        printf("  %-8s %6.0f ns a sample, %6.0f ns a density, variance %.3g, ready in %.3f s, %zu bytes",
+               light_choice_modes[mode], sample, density, mean_variance(job.world, &p), ready,
                light_choice_bytes(&job.world->choice));
         if (job.world->choice.has_tree)
             printf(", %.1f nodes", nodes_visited(&job.world->choice.tree, &p));
