@@ -5,8 +5,8 @@
 // is what its rounding adds to relMSE, the largest of some trials (replay/trial.h), as if roundings
 // were independent. They are not where rows are dropped or averaged, so the price is found by
 // bisection on pictures: the largest relMSE of the trials' pictures against those of the tensor as it
-// was is within the budget, and stands in the metadata, "storage relmse". The tensor's own noise has
-// no part in that. Halves get a budget of their own, a share of the noise they tell of.
+// was is within the budget, and stands in the metadata, "storage relmse"; edits far from all trials may
+// exceed it. The tensor's own noise has no part in that. Halves get a budget of their own, a share of the noise they tell of.
 //
 // Lists of pixels are brought to Z order, so that four lanes are neighbours.
 #pragma once
