@@ -132,19 +132,51 @@ struct counts {
     uint64_t rejected;
 };
 
+// A finished unit on its way to rank 0, which takes it in between units of its own: meanwhile the next
+// one is worked on.
+struct parcel {
+    struct unit unit;
+    double *sums;
+    size_t room; // of sums
+    MPI_Request requests[2];
+};
+
+static void parcel_wait(struct parcel *p) {
+    MPI_Waitall(2, p->requests, MPI_STATUSES_IGNORE);
+}
+
+// sums == NULL: the unit was given up.
+static void parcel_send(struct parcel *p, const struct unit *u, const double *sums, size_t values) {
+    parcel_wait(p);
+    p->unit = *u;
+    p->unit.count = sums ? u->count : 0;
+    MPI_Isend(&p->unit, sizeof p->unit, MPI_BYTE, 0, TAG_SUMS, MPI_COMM_WORLD, &p->requests[0]);
+    if (!sums)
+        return;
+    if (p->room < values) {
+        mem_free(p->sums);
+        p->sums = mem_array(values, sizeof *p->sums);
+        p->room = values;
+    }
+    memcpy(p->sums, sums, values * sizeof *sums);
+    MPI_Isend(p->sums, (int)values, MPI_DOUBLE, 0, TAG_SUMS, MPI_COMM_WORLD, &p->requests[1]);
+}
+
 static void help(const struct film *film, const struct render_options *o) {
     struct bench b = bench_create(film, o);
-    for (struct unit u;;) {
+    struct parcel parcels[UNITS_AHEAD];
+    for (int i = 0; i < UNITS_AHEAD; i++)
+        parcels[i] = (struct parcel){.requests = {MPI_REQUEST_NULL, MPI_REQUEST_NULL}};
+    for (int i = 0;; i = (i + 1) % UNITS_AHEAD) {
+        struct unit u;
         MPI_Recv(&u, sizeof u, MPI_BYTE, 0, TAG_UNIT, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
         if (u.count == 0)
             break;
-        const double *sums = work(&b, &u);
-        if (!sums)
-            u.count = 0;
-        MPI_Send(&u, sizeof u, MPI_BYTE, 0, TAG_SUMS, MPI_COMM_WORLD);
-        if (sums)
-            MPI_Send(sums, (int)(u.tiles * film_tile_values(film)), MPI_DOUBLE, 0, TAG_SUMS,
-                     MPI_COMM_WORLD);
+        parcel_send(&parcels[i], &u, work(&b, &u), u.tiles * film_tile_values(film));
+    }
+    for (int i = 0; i < UNITS_AHEAD; i++) {
+        parcel_wait(&parcels[i]);
+        mem_free(parcels[i].sums);
     }
     const struct counts n = {tracer_count(b.tracer), film_rejected(b.film)};
     MPI_Send(&n, sizeof n, MPI_BYTE, 0, TAG_COUNTS, MPI_COMM_WORLD);
