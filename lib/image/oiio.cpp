@@ -103,6 +103,22 @@ static std::string transposed(const OIIO::ImageSpec &spec, const char *name) {
     return text;
 }
 
+// Empty space costs such a file nothing, but a small one is not believed all that it claims.
+static bool is_believed(struct decoder_input *in, const OIIO::ImageSpec &spec) {
+    if (spec.depth < 1 || spec.depth > 1 << 16 || spec.height < 1 || spec.height > 1 << 16)
+        return fail(in, "has an impossible size");
+    const double mebibyte = 1 << 20, most = 64 * mebibyte + 256.0 * (double)in->file_size;
+    if (4.0 * spec.width * spec.height * spec.depth * spec.nchannels <= most)
+        return true;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "claims %d x %d x %d voxels; a file of %llu bytes may take at most %.0f MiB of "
+                  "memory",
+                  spec.width, spec.height, spec.depth, (unsigned long long)in->file_size,
+                  most / mebibyte);
+    return fail(in, text);
+}
+
 static bool decode_voxels(const struct oiio_host *host, struct decoder_input *in,
                           struct image *im) {
     OIIO::attribute("threads", 1);
@@ -118,9 +134,8 @@ static bool decode_voxels(const struct oiio_host *host, struct decoder_input *in
     const OIIO::ImageSpec spec = input->spec();
     if (spec.get_string_attribute("openvdb:class") == "level set")
         return fail(in, "is a level set, whose values are distances; expected a fog volume");
-    if (spec.depth < 1 || spec.depth > 1 << 16 || spec.height < 1 || spec.height > 1 << 16)
-        return fail(in, "has an impossible size");
-    if (!host->init_image(in, im, spec.width, (int64_t)spec.height * spec.depth, spec.nchannels))
+    if (!is_believed(in, spec) ||
+        !host->init_image(in, im, spec.width, (int64_t)spec.height * spec.depth, spec.nchannels))
         return false;
     const int part = input->current_subimage();
     if (!input->read_image(part, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, im->pixels))
