@@ -44,10 +44,10 @@ contains "$out" "max-depth"
 
 # All combinations; a setting that a method lacks is tried once.
 expect 0 "$relume" study "$scene" --size 12x12 --vary integrator=path,direct \
-    --vary shading-samples=1,2 --vary spp=2 --repeat 2 --reference-spp 64 -q -o "$folder/methods"
+    --vary emitter-samples=1,2 --vary spp=2 --repeat 2 --reference-spp 64 -q -o "$folder/methods"
 holds "$folder/methods/study.json" 'len(p) == 3'
 holds "$folder/methods/study.json" \
-    '[q["settings"].get("shading_samples") for q in p] == [None, "1", "2"]'
+    '[q["settings"].get("emitter_samples") for q in p] == [None, "1", "2"]'
 holds "$folder/methods/study.json" 'all(q["relmse"]["error"] is None for q in p)' # two runs only
 holds "$folder/methods/study.json" 'len({r["seed"] for q in p for r in q["runs"]}) == 6'
 
