@@ -134,6 +134,7 @@ static int trace_and_write(const struct values *v, const char *command, struct j
         job_trace(job, film, &o.render);
         progress_end(&l->progress);
         o.rejected = film_rejected(film);
+        o.keeping = l->checkpoint.spent;
         o.clamp = v->clamp;
         o.clamped = film_clamped(film);
         written = checkpoint_finish(&l->checkpoint, film);

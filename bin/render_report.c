@@ -37,6 +37,7 @@ void render_report_json(const struct job *job, const struct render_outcome *o) {
     json_add_count(j, "samples", (int64_t)t->samples);
     json_add_bool(j, "stopped", t->stopped);
     json_add_number(j, "seconds", t->seconds);
+    json_add_number(j, "keeping_seconds", o->keeping);
     json_add_number(j, "load_seconds", job->load_seconds);
     json_add_number(j, "accel_seconds", job->world->accel_seconds);
     json_add_count(j, "accel_bytes", (int64_t)accel_bytes(job->world->accel));

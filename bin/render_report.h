@@ -9,6 +9,7 @@ struct render_outcome {
     struct render_result render;
     uint64_t rejected, overflows;
     double clamp, clamped; // limit; share of light it removed, negative: there is none
+    double keeping;        // seconds of the render that went to its journal and previews
 };
 
 // What makes the picture worse than asked for.

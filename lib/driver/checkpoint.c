@@ -113,6 +113,7 @@ void checkpoint_tick(struct checkpoint *c, const struct film *film) {
         checkpoint_picture(c, film, &so_far);
         c->next_preview = next_time(&c->preview_interval, time_seconds() - before);
     }
+    c->spent += time_seconds() - now;
 }
 
 bool checkpoint_finish(struct checkpoint *c, const struct film *film) {

@@ -26,6 +26,7 @@ struct checkpoint {
     char path[4096];
     double start, next_journal, next_preview; // monotonic seconds
     double journal_interval, preview_interval;
+    double spent; // seconds that rendering waited for all this between passes
 };
 
 // Restores the film from the journal when resuming; a new one takes its place at the first update.

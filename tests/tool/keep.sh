@@ -190,10 +190,11 @@ python3 -c 'import json, sys
 r = json.loads(sys.argv[1])
 sys.exit(not (0 < r["noise"] <= 0.1 and r["samples"] % 64 == 0))' "$out" || fail "--noise: $out"
 expect 3 "$relume" render "$scene" -o "$folder/noise.exr" --noise 1e-6 --spp 64 --quiet
-expect 0 "$relume" render "$scene" -o "$folder/time.exr" --time 1 --quiet --json
+expect 0 "$relume" render "$scene" -o "$folder/time.exr" --time 1 --checkpoint 0.1 --quiet --json
 python3 -c 'import json, sys
 r = json.loads(sys.argv[1])
-sys.exit(not (0.5 < r["seconds"] < 5 and r["samples"] > 0))' "$out" || fail "--time: $out"
+sys.exit(not (0.5 < r["seconds"] < 5 and r["samples"] > 0 and 0 < r["keeping_seconds"] < r["seconds"]))
+' "$out" || fail "--time: $out"
 
 # A picture to look at meanwhile.
 "$relume" render "$scene" -o "$folder/preview.exr" --time 60 --preview 0.3 --quiet &
