@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every material of the registry, in 20 parameter sets and more (every second one without
-// RELUME_TEST_FULL; RELUME_TEST_SETS=1 takes all, with the samples of the short test) and seen from 20
-// directions; only those named by arguments if there are any:
+// Every material of the registry, in 20 parameter sets and more (every fifth one where
+// RELUME_TEST_SANITIZED is set) and seen from 20 directions; only those named by arguments if there are
+// any:
 //
 //  - samples against the density they claim: chi-square over bins around the lobe's peak, delta
 //    lobes and failures to scatter as bins of their own; the bins' probabilities by adaptive
@@ -399,15 +399,6 @@ static void every_entry_has_its_sets(int argc, char **argv) {
     }
 }
 
-// Every how many-th set is taken. Under sanitizers, which look for other faults than wrong densities,
-// every fifth is enough.
-static int set_stride(bool full) {
-    const char *asked = getenv("RELUME_TEST_SETS");
-    if (asked && atoi(asked) > 0)
-        return atoi(asked);
-    return getenv("RELUME_TEST_SANITIZED") ? 5 : full ? 1 : 2;
-}
-
 int main(int argc, char **argv) {
     const bool full = getenv("RELUME_TEST_FULL");
     if (full)
@@ -416,7 +407,8 @@ int main(int argc, char **argv) {
     const double level = sidak(FALSE_ALARMS, bsdf_set_count(NULL) * (2 * BSDF_DIRECTIONS + 1));
     printf("directional albedo from outside (+) and inside (-) at 1 12 27 40 52 63 72 80 86 89 "
            "degrees\n");
-    const int stride = set_stride(full);
+    // Sanitizers look for other faults than wrong densities.
+    const int stride = getenv("RELUME_TEST_SANITIZED") ? 5 : 1;
     for (int row = 0, set = 0; row < BSDF_ROWS; row++) {
         for (int i = 0; i < bsdf_row_sets(row); i++) {
             if (bsdf_is_asked(argc, argv, bsdf_rows[row].name) && set++ % stride)
