@@ -38,3 +38,10 @@ void row_pack(const float *values, uint32_t per_channel, uint32_t bits, void *ou
         }
     }
 }
+
+void row_pack_means(const float *values, uint32_t bits, void *out) {
+    float mean[ROW_MEANS];
+    for (int i = 0; i < ROW_MEANS; i++)
+        mean[i] = 0.25f * (values[4 * i] + values[4 * i + 1] + values[4 * i + 2] + values[4 * i + 3]);
+    row_pack(mean, ROW_MEANS / ROW_CHANNELS, bits, out);
+}

@@ -7,7 +7,7 @@
 #include "transport/bfloat16.h"
 #include "transport/rows.h"
 
-enum { ROW_CHANNELS = 3, ROW_HEAD = 16 };
+enum { ROW_CHANNELS = 3, ROW_HEAD = 16, ROW_MEANS = ROW_VALUES / 4 };
 
 void row_pack(const float *values, uint32_t per_channel, uint32_t bits, void *out);
 
@@ -23,4 +23,14 @@ static inline void row_unpack(const void *in, uint32_t per_channel, uint32_t bit
         for (uint32_t i = c * per_channel; i < (c + 1) * per_channel; i++)
             values[i] = lo + step * values[i];
     }
+}
+
+// Half the resolution: means of four lanes, which are 2x2 pixels where the list is in Z order.
+void row_pack_means(const float *values, uint32_t bits, void *out);
+
+static inline void row_unpack_means(const void *in, uint32_t bits, float *values) {
+    float mean[ROW_MEANS];
+    row_unpack(in, ROW_MEANS / ROW_CHANNELS, bits, mean);
+    for (int i = 0; i < ROW_VALUES; i++)
+        values[i] = mean[i / 4];
 }
