@@ -67,9 +67,10 @@ static bool prepare(struct object *object, struct arena *arena) {
     const bool textured = self->alpha.texture != NULL;
     const float alpha = self->alpha.value[0];
     self->eta = self->index.int_ior / self->index.ext_ior;
-    if (textured || !is_smooth(alpha))
-        self->outside = arena_alloc(arena, (textured ? LEVELS : 1) * sizeof *self->outside);
-    for (int i = 0; i < (textured ? LEVELS : self->outside ? 1 : 0); i++) {
+    const int tables = textured ? LEVELS : is_smooth(alpha) ? 0 : 1;
+    if (tables > 0)
+        self->outside = arena_alloc(arena, (size_t)tables * sizeof *self->outside);
+    for (int i = 0; i < tables; i++) {
         const struct microfacet m = facets_of(self, textured ? alpha_of_level(i) : alpha);
         boundary_tabulate(&m, self->eta, textured ? LEVEL_NODES : NODES, &self->outside[i]);
     }
