@@ -264,3 +264,20 @@ double edit_picture_largest(const struct edit_picture *a, const struct edit_pict
     }
     return most / brightest;
 }
+
+void edit_picture_write_sky(const char *path, double sun, bool below_only) {
+    enum { W = 64, H = 32 };
+    struct image im;
+    if (!image_init(&im, W, H, 3))
+        exit(1);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            for (int c = 0; c < 3; c++) {
+                const bool up = y < H / 2;
+                double v = up ? 0.6 + 0.3 * sin(0.2 * x) : 0.2;
+                v = x == 20 && y == 8 ? v + sun : v;
+                im.pixels[(y * W + x) * 3 + c] = (float)(below_only && y <= H / 2 + 1 ? 0 : v);
+            }
+    image_write_exr(path, &im, NULL);
+    image_finish(&im);
+}

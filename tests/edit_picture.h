@@ -32,3 +32,7 @@ double edit_picture_relmse(const struct edit_picture *a, const struct edit_pictu
 // Largest difference, relative to the brightest value of b.
 double edit_picture_largest(const struct edit_picture *a, const struct edit_picture *b);
 double edit_picture_mean(const struct edit_picture *p);
+
+// Writes an environment, even above and below the horizon, with one texel brighter by `sun`;
+// below_only: black above.
+void edit_picture_write_sky(const char *path, double sun, bool below_only);
