@@ -8,11 +8,14 @@
 #include "image/decode.h"
 #include "image/exr_core.h"
 
+// Of the context that this thread opened last. Asking a context for its user data waits for a lock that
+// OpenEXRCore 3.1 may hold when it tells of an error, as when the disk is full, and would wait for ever.
+static _Thread_local struct exr_errors *kept;
+
 static void keep_error(exr_const_context_t context, exr_result_t code, const char *message) {
-    struct exr_errors *errors = NULL;
-    if (context && exr_get_user_data(context, (void **)&errors) == EXR_ERR_SUCCESS && errors &&
-        !errors->message[0])
-        snprintf(errors->message, sizeof errors->message, "%s (%s)", message,
+    (void)context;
+    if (kept && !kept->message[0])
+        snprintf(kept->message, sizeof kept->message, "%s (%s)", message,
                  exr_get_error_code_as_string(code));
 }
 
@@ -25,7 +28,7 @@ exr_context_initializer_t exr_initializer(struct exr_errors *errors) {
     init.error_handler_fn = keep_error;
     init.alloc_fn = allocate;
     init.free_fn = free;
-    init.user_data = errors;
+    kept = errors;
     init.max_image_width = init.max_image_height = EXR_LARGEST_SIDE;
     init.max_tile_width = init.max_tile_height = EXR_LARGEST_SIDE;
     return init;

@@ -2,8 +2,10 @@
 // EXR files come back as they were written: bits, names, attributes, windows.
 #include "check.h"
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "base/file.h"
@@ -174,6 +176,32 @@ static void truncated_files_are_refused(void) {
     image_finish(&im);
 }
 
+// No more than a few bytes may be written, as on a disk that is full: it fails at every place of the
+// file, ends (OpenEXRCore holds a lock while it tells of some errors), and leaves what was there.
+static void failed_writes_end(void) {
+    struct image im, back;
+    struct rlimit before, limit;
+    size_t size = 0;
+    CHECK(image_init(&im, 150, 100, 3));
+    fill_random(&im);
+    CHECK(image_write_exr(path, &im, NULL));
+    mem_free(file_read(path, 0, &size));
+    CHECK(getrlimit(RLIMIT_FSIZE, &before) == 0);
+    signal(SIGXFSZ, SIG_IGN);
+    alarm(60);
+    for (size_t i = 0; i < 16; i++) {
+        limit = before;
+        limit.rlim_cur = i < 8 ? 60 * i : (i - 8) * size / 8;
+        CHECK(setrlimit(RLIMIT_FSIZE, &limit) == 0);
+        CHECK(!image_write_exr(path, &im, NULL));
+    }
+    alarm(0);
+    CHECK(setrlimit(RLIMIT_FSIZE, &before) == 0);
+    CHECK(image_read(path, &back) && differing_bits(&im, &back) == 0);
+    image_finish(&im);
+    image_finish(&back);
+}
+
 int main(void) {
     float_round_trip_is_bit_exact(1, 1, 1, 1);
     float_round_trip_is_bit_exact(1, 1, 4, 2);
@@ -187,6 +215,7 @@ int main(void) {
     half_rounds_and_counts_overflow();
     refusals_leave_the_old_file();
     truncated_files_are_refused();
+    failed_writes_end();
     unlink(path);
     return check_result();
 }
