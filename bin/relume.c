@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // relume SUBCOMMAND ...: finds the subcommand, fills its options and runs it.
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,11 +86,12 @@ int main(int argc, char **argv) {
     const struct entry *e = registry_find(&subcommands, name);
     if (!e)
         return report_unknown(name);
+    signal(SIGXFSZ, SIG_IGN); // a file that may not grow is told of like a full disk
     struct arena arena = {0};
     int code = run((const struct subcommand *)e, argc - 1, argv + 1, join(&arena, argc, argv));
     arena_finish(&arena);
-    // A full disk or a closed pipe shows only when the buffer is flushed.
-    if (fflush(stdout) != 0 && code == EXIT_DONE) {
+    // A full disk or a closed pipe shows only when the buffer is flushed, now or earlier.
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_DONE) {
         log_error("standard output: cannot be written");
         code = EXIT_FAILED;
     }

@@ -62,6 +62,11 @@ expect 1 "$relume" measure "$sky" <<<"0 1 0 0 1 nan"
 expect 1 "$relume" measure "$sky" <<<"0 1 0 0 1 0 7"
 expect 1 "$relume" measure "$sky" --integrator direct <<<"0 1 0 0 1 0"
 contains "$err" "path"
+if [ -w /dev/full ]; then
+    err=$("$relume" measure "$sky" --quiet --spp 64 2>&1 >/dev/full <<<"0 1 0 0 1 0")
+    [ $? = 1 ] || fail "a full disk went unsaid"
+    contains "$err" "standard output"
+fi
 expect 0 "$relume" measure "$sky" --quiet </dev/null
 [ -z "$out" ] || fail "something for nothing: $out"
 finish

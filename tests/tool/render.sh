@@ -165,6 +165,18 @@ if mount -t tmpfs -o size=256k none "$folder/small" 2>/dev/null; then
     umount "$folder/small"
 fi
 
+# A file that may not grow (here 4 KB) is told of in the same way.
+cp "$scene" "$folder/x.exr"
+for options in --checkpoint=1 --preview=0.1 --half; do
+    code=0
+    err=$( (ulimit -f 4 && timeout 20 "$relume" render "$folder/clamp.xml" -o "$folder/x.exr" --size 96x96 \
+        --spp 64 "$options") 2>&1 >/dev/null) || code=$?
+    [ $code = 1 ] || fail "exit code $code beyond the size of a file: $err"
+    contains "$err" "x.exr"
+    cmp -s "$scene" "$folder/x.exr" || fail "a limit of size cost a picture"
+    [ -z "$(ls "$folder" | grep 'x.exr.*tmp')" ] || fail "left behind: $(ls "$folder")"
+done
+
 # Mistakes in a scene name file, line and the nearest name; --lenient takes unknown parameters.
 make_scene bad.xml '<shape type="sphere"><float name="radios" value="1"/></shape>'
 expect 1 "$relume" render "$folder/bad.xml" -o "$picture"
