@@ -102,10 +102,14 @@ static bool choose_range(const uint64_t range[2], struct render_options *r, uint
     *first = range[0];
     if (range[1] == 0)
         return true;
-    if (range[0] % FILM_BLOCK == 0 && range[1] % FILM_BLOCK == 0 && range[0] < range[1] &&
-        range[1] <= MOST_SAMPLES) {
+    if (range[0] % FILM_BLOCK == 0 && range[1] % FILM_BLOCK == 0 && range[1] <= MOST_SAMPLES) {
         r->end = range[1];
         return true;
+    }
+    if (range[1] > MOST_SAMPLES) {
+        log_error("--samples %" PRIu64 ":%" PRIu64 " goes beyond the %d samples that a pixel may have",
+                  range[0], range[1], MOST_SAMPLES);
+        return false;
     }
     const uint64_t a = nearest_boundary(range[0]), b = nearest_boundary(range[1]);
     log_error("--samples %" PRIu64 ":%" PRIu64 " does not lie on multiples of %d; the nearest range "

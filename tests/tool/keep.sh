@@ -113,6 +113,8 @@ contains "$err" "rec709"
 refused "no journal" a other
 expect 1 "$relume" render "$scene" -o "$folder/x.exr" --samples 100:250
 contains "$err" "128:256"
+expect 1 "$relume" render "$scene" -o "$folder/x.exr" --samples 0:100000000000000
+contains "$err" "1073741824 samples"
 
 # Cryptomatte layers are united with them, and told of where they cannot be. The clamp is summed.
 plain=("${options[@]}")
