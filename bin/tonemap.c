@@ -51,11 +51,18 @@ static bool has_view(const struct tonemap_options *o) {
 }
 
 static bool agrees(const struct tonemap_options *o) {
-    const bool other = o->quantity != QUANTITY_NONE || o->curve != TONE_SRGB;
-    if (has_view(o) && other)
-        log_error("a view of OpenColorIO is a curve of its own: expected no --curve and no "
-                  "--false-colour beside it");
-    return !(has_view(o) && other);
+    const bool numbers = o->quantity != QUANTITY_NONE, curve = o->curve != TONE_SRGB;
+    const char *what = NULL;
+    if (has_view(o) && (numbers || curve))
+        what = "a view of OpenColorIO is a curve of its own: expected no --curve and no "
+               "--false-colour beside it";
+    else if (numbers && (curve || o->exposure != 0))
+        what = "--false-colour shows numbers: expected no --curve and no --exposure beside it";
+    else if (!numbers && (o->range || o->linear))
+        what = "--range and --linear are of a scale: expected --false-colour beside them";
+    if (what)
+        log_error("%s", what);
+    return !what;
 }
 
 static bool map(const struct tonemap_options *o, struct image *rgb) {

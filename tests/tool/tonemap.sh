@@ -58,6 +58,11 @@ shows_middle --false-colour lux --efficacy 200 --range 0:200 --linear
 expect 0 "$relume" tonemap "$half" -o "$png" --false-colour lux
 expect 1 "$relume" tonemap "$half" -o "$png" --false-colour lux --range 0:5
 contains "$err" "LOW:HIGH"
+for options in "--range 1:5" --linear "--false-colour lux --exposure 2" "--false-colour lux --curve filmic"; do
+    # shellcheck disable=SC2086 # words
+    expect 2 "$relume" tonemap "$half" -o "$png" $options
+    contains "$err" "--false-colour"
+done
 
 expect 0 "$relume" info "$half" --json
 near "$out" channels.1.mean 0.5
