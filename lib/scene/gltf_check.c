@@ -90,13 +90,25 @@ static bool check_camera(struct gltf *g, size_t i) {
     return true;
 }
 
+static bool check_spot(struct gltf *g, const struct json *light, const char *at) {
+    const struct json *spot = json_get(light, "spot");
+    if (!spot)
+        return gltf_fail(g, at, "lacks \"spot\"");
+    const double inner = gltf_number(spot, "innerConeAngle", 0);
+    const double outer = gltf_number(spot, "outerConeAngle", 0.785398163397448);
+    return inner < outer || gltf_fail(g, arena_printf(g->arena, "%s/spot", at),
+                                      "has an inner cone of %g, not inside the outer one of %g", inner,
+                                      outer);
+}
+
 static bool check_lights(struct gltf *g) {
     const struct json *lights = json_get(gltf_extension(g->root, "KHR_lights_punctual"), "lights");
     for (size_t i = 0; i < json_count(lights); i++) {
         const struct json *light = json_at(lights, i);
-        if (strcmp(json_text(json_get(light, "type")), "spot") == 0 && !json_get(light, "spot"))
-            return gltf_fail(g, arena_printf(g->arena, "/extensions/KHR_lights_punctual/lights/%zu",
-                                             i), "lacks \"spot\"");
+        if (strcmp(json_text(json_get(light, "type")), "spot") == 0 &&
+            !check_spot(g, light,
+                        arena_printf(g->arena, "/extensions/KHR_lights_punctual/lights/%zu", i)))
+            return false;
     }
     return true;
 }
@@ -111,6 +123,24 @@ static bool check_material(struct gltf *g, size_t i) {
 }
 
 // ---- nodes ----------------------------------------------------------------------------------
+
+// A scene names roots, each once.
+static bool check_roots(struct gltf *g, size_t scene, const int64_t *parent) {
+    const struct json *roots = json_get(gltf_item(g, "scenes", scene), "nodes");
+    const size_t n = json_count(json_get(g->root, "nodes"));
+    bool *seen = mem_array(n, sizeof *seen), ok = true;
+    for (size_t i = 0; i < json_count(roots) && ok; i++) {
+        const char *at = arena_printf(g->arena, "/scenes/%zu/nodes/%zu", scene, i);
+        double node;
+        json_read_number(json_at(roots, i), &node);
+        ok = (!seen[(size_t)node] || gltf_fail(g, at, "is named for the second time")) &&
+             (parent[(size_t)node] < 0 ||
+              gltf_fail(g, at, "is a child of node %d, expected a root", (int)parent[(size_t)node]));
+        seen[(size_t)node] = true;
+    }
+    mem_free(seen);
+    return ok;
+}
 
 // Each node has at most one parent, so following parents ends at a root or shows a loop.
 static bool check_tree(struct gltf *g) {
@@ -138,6 +168,8 @@ static bool check_tree(struct gltf *g) {
         if (steps > 4096 && ok)
             ok = gltf_fail(g, arena_printf(g->arena, "/nodes/%zu", i), "is nested too deep");
     }
+    for (size_t i = 0; i < json_count(json_get(g->root, "scenes")) && ok; i++)
+        ok = check_roots(g, i, parent);
     mem_free(parent);
     return ok;
 }

@@ -112,7 +112,7 @@ static struct xml_node *start(const struct gltf_making *m, struct xml_node *pare
 
 static bool add_thin(const struct gltf_making *m, struct xml_node *parent) {
     struct xml_node *node = start(m, parent, "principledthin");
-    if (m->metallic > 0 && gltf_texture_of(m, m->pbr, "metallicRoughnessTexture"))
+    if (m->metallic > 0)
         gltf_warn(m->g, "thin sheets that transmit have no metallic part here");
     tree_number(m->r, node, "eta", fmax(m->eta, 0.01));
     const double strength = gltf_number(m->transmission, "transmissionFactor", 0);
@@ -179,10 +179,13 @@ static bool add_opacity(const struct gltf_making *m, struct xml_node *node) {
                            gltf_texture_of(m, m->pbr, "baseColorTexture"), "a");
 }
 
+// A cutoff above 1 leaves nothing.
 static bool has_alpha(const struct gltf_making *m) {
     const char *mode = json_text(json_get(m->material, "alphaMode"));
-    return mode && (strcmp(mode, "MASK") == 0 || strcmp(mode, "BLEND") == 0) &&
-           (m->base[3] != 1 || m->colour_channels == 4 || json_get(m->pbr, "baseColorTexture"));
+    const bool masked = mode && strcmp(mode, "MASK") == 0;
+    const bool nothing = masked && gltf_number(m->material, "alphaCutoff", 0.5) > 1;
+    return (masked || (mode && strcmp(mode, "BLEND") == 0)) &&
+           (nothing || m->base[3] != 1 || m->colour_channels == 4 || json_get(m->pbr, "baseColorTexture"));
 }
 
 // normalmap with xy scaled about 0.5 where the file asks for that
@@ -201,18 +204,22 @@ static bool add_normal_map(const struct gltf_making *m, struct xml_node *node,
     return gltf_add_texture(m->g, m->r, product, info, &use);
 }
 
+static bool is_metal(const struct gltf_making *m) {
+    return m->metallic == 1 && !json_get(m->pbr, "metallicRoughnessTexture");
+}
+
+// Metals do not, whatever the factor says.
 static bool transmits(const struct gltf_making *m) {
-    return gltf_number(m->transmission, "transmissionFactor", 0) > 0;
+    return gltf_number(m->transmission, "transmissionFactor", 0) > 0 && !is_metal(m);
 }
 
 static bool add_surface(const struct gltf_making *m, struct xml_node *parent) {
     const bool thick = gltf_number(m->volume, "thicknessFactor", 0) > 0;
-    const bool metal = m->metallic == 1 && !json_get(m->pbr, "metallicRoughnessTexture");
     if (transmits(m) && !thick)
         return add_thin(m, parent);
     if (transmits(m))
         make_interior(m);
-    if (m->anisotropy && metal)
+    if (m->anisotropy && is_metal(m))
         return add_brushed_metal(m, parent);
     return add_solid(m, parent);
 }

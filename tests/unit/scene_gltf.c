@@ -90,11 +90,49 @@ static void reads_two_sets_of_coordinates(void) {
     scene_destroy(s);
 }
 
+// The material that a model's only one becomes; "": none.
+static const char *material_of(const char *material) {
+    static char name[64];
+    char text[2048];
+    snprintf(text, sizeof text, "{" TRIANGLE MESH "\"extensionsUsed\":[\"KHR_materials_transmission\"],"
+             "\"materials\":[%s],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}", material);
+    struct scene *s = read_model(text);
+    snprintf(name, sizeof name, "%s", s ? s->shapes[0].bsdf->type->name : "");
+    scene_destroy(s);
+    return name;
+}
+
+static void follows_the_words_of_the_format(void) {
+    // "A value greater than 1.0 will render the entire material as transparent" (alphaCutoff)
+    CHECK(strcmp(material_of("{\"alphaMode\":\"MASK\"}"), "twosided") == 0);
+    CHECK(strcmp(material_of("{\"alphaMode\":\"MASK\",\"alphaCutoff\":1.5}"), "mask") == 0);
+    // metals, as all are where nothing is said, do not transmit
+    static const char glass[] = "{\"pbrMetallicRoughness\":{\"metallicFactor\":%s},\"extensions\":"
+                                "{\"KHR_materials_transmission\":{\"transmissionFactor\":1}}}";
+    char text[256];
+    snprintf(text, sizeof text, glass, "0");
+    CHECK(strcmp(material_of(text), "principledthin") == 0);
+    snprintf(text, sizeof text, glass, "0.5");
+    CHECK(strcmp(material_of(text), "principledthin") == 0 && captured_has("no metallic part"));
+    snprintf(text, sizeof text, glass, "1");
+    CHECK(strcmp(material_of(text), "twosided") == 0);
+}
+
 static void refuses_with_a_pointer(void) {
     CHECK(!read_model("{" TRIANGLE MESH "\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}]}"));
     CHECK(captured_has("model.gltf: /meshes/0/primitives/0/material: is 0"));
     CHECK(!read_model("{" TRIANGLE MESH "\"materials\":[{\"alphaCutoff\":-1}],\"scenes\":[{}]}"));
     CHECK(captured_has("/materials/0/alphaCutoff: is -1"));
+    CHECK(!read_model("{" TRIANGLE MESH "\"materials\":[{}],\"nodes\":[{\"mesh\":0}],"
+                      "\"scenes\":[{\"nodes\":[0,0]}]}"));
+    CHECK(captured_has("/scenes/0/nodes/1: is named for the second time"));
+    CHECK(!read_model("{" TRIANGLE MESH "\"materials\":[{}],\"nodes\":[{\"mesh\":0},"
+                      "{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]}"));
+    CHECK(captured_has("/scenes/0/nodes/0: is a child of node 1"));
+    CHECK(!read_model("{" TRIANGLE MESH "\"materials\":[{}],\"extensionsUsed\":"
+                      "[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":"
+                      "[{\"type\":\"spot\",\"spot\":{\"innerConeAngle\":1}}]}},\"scenes\":[{}]}"));
+    CHECK(captured_has("/lights/0/spot: has an inner cone of 1"));
     CHECK(!read_model("{\"asset\":{\"version\":\"1.0\"}}") && captured_has("/asset/version"));
 }
 
@@ -104,6 +142,7 @@ int main(void) {
     shares_a_mesh_by_instances();
     reads_cameras_lights_and_emission();
     reads_two_sets_of_coordinates();
+    follows_the_words_of_the_format();
     refuses_with_a_pointer();
     scene_folder_close();
     return check_result();
