@@ -198,6 +198,15 @@ r = json.loads(sys.argv[1])
 sys.exit(not (0.5 < r["seconds"] < 5 and r["samples"] > 0 and 0 < r["keeping_seconds"] < r["seconds"]))
 ' "$out" || fail "--time: $out"
 
+# Killed and resumed with --time: all samples that it says, and no others, are in the picture.
+timeout -s KILL 0.7 "$relume" render "$scene" -o "$folder/timed.exr" "${options[@]}" --time 60 --checkpoint 0.05
+expect 0 "$relume" render "$scene" -o "$folder/timed.exr" "${options[@]}" --time 0.2 --resume --json
+samples=$(python3 -c 'import json, sys; print(json.loads(sys.argv[1])["samples"])' "$out")
+expect 0 "$relume" info "$folder/timed.exr"
+contains "$out" "relume.samples: $samples"
+render counted --spp "$samples"
+same timed counted
+
 # A picture to look at meanwhile.
 "$relume" render "$scene" -o "$folder/preview.exr" --time 60 --preview 0.3 --quiet &
 pid=$!
