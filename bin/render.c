@@ -116,6 +116,14 @@ static void between_passes(void *user, double done, const struct film *film) {
     progress_update(&l->progress, done, note);
 }
 
+// Whether all ranks can go on; one that cannot has said why. Else the others would wait for it.
+static bool all_can(bool can) {
+    uint64_t failed = !can;
+    ranks_sum(&failed, 1);
+    ranks_broadcast(&failed, sizeof failed);
+    return failed == 0;
+}
+
 static int trace_and_write(const struct values *v, const char *command, struct job *job,
                            struct film *film, struct listener *l) {
     struct render_outcome o = {.output = v->output};
@@ -125,11 +133,13 @@ static int trace_and_write(const struct values *v, const char *command, struct j
         .preview_seconds = v->preview, .resume = v->resume, .exr = &exr,
         .space = (enum image_space)v->space,
         .keep = v->checkpoint > 0 || v->resume || v->samples};
-    if (ranks_index() > 0) { // rank 0 keeps and reports
-        job_trace(job, film, &o.render);
-        return EXIT_DONE;
+    const bool helps = ranks_index() > 0; // rank 0 keeps and reports
+    bool written = all_can(helps || checkpoint_open(&l->checkpoint, &keeping, job, film));
+    if (helps) {
+        if (written)
+            job_trace(job, film, &o.render);
+        return written ? EXIT_DONE : EXIT_FAILED;
     }
-    bool written = checkpoint_open(&l->checkpoint, &keeping, job, film);
     if (written) {
         job_trace(job, film, &o.render);
         progress_end(&l->progress);
@@ -172,7 +182,10 @@ static int run_job(const struct values *v, const char *command, const struct sce
                     .height = v->size[1]}};
     if (ranks_index() > 0)
         log_set_level(LOG_ERROR); // rank 0 says it once
-    if (!job_open(&job, &job_options)) {
+    const bool opened = job_open(&job, &job_options);
+    if (!all_can(opened)) {
+        if (opened)
+            job_close(&job);
         ranks_finish();
         return EXIT_FAILED;
     }

@@ -46,6 +46,14 @@ done
 ranks 2 resumed --spp 40 --variance --checkpoint 60
 ranks 3 resumed --spp 150 --variance --resume
 same alone resumed
+# What one process refuses ends all of them.
+expect 1 timeout 60 mpirun --oversubscribe -n 2 "$relume" render "$scene" -o "$folder/resumed.exr" --threads 1 \
+    --spp 200 --variance --resume --seed 3
+contains "$err" "holds samples of seed"
+expect 1 timeout 60 mpirun --oversubscribe -n 1 "$relume" render "$scene" -o "$folder/x.exr" --spp 64 : \
+    -n 1 "$relume" render "$folder/none.xml" -o "$folder/x.exr" --spp 64
+contains "$err" "none.xml"
+[ ! -e "$folder/x.exr" ] || fail "a picture without a process that failed"
 ranks 2 noise --noise 0.02 --json
 near "$out" samples 64
 
