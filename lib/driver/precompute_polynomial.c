@@ -55,6 +55,8 @@ struct tracing {
     struct edit_sums *sums;
     struct tracer *tracer;
     uint32_t strip, strips, of_unit, first, samples;
+    uint32_t handed_out, done; // of the strips, on rank 0
+    bool closed;               // no more are handed out
     struct edit_sums_cells *handed; // by strip, on other ranks than 0
 };
 
@@ -69,30 +71,43 @@ static void forget_handed(struct tracing *t) {
     }
 }
 
-static bool work(void *user, uint32_t unit, struct ranks_part *parts, uint32_t *count) {
+static bool next(void *user, struct ranks_unit *u) {
     struct tracing *t = user;
-    const volatile sig_atomic_t *stop = t->run->p->tracer.stop;
-    const uint32_t done = unit * t->of_unit, left = t->strips - done;
-    const uint32_t n = left < t->of_unit ? left : t->of_unit, first = t->strip + done;
-    forget_handed(t);
-    *count = n;
-    if ((stop && *stop) || !tracer_run(t->tracer, first, n, t->first, t->samples) || (stop && *stop))
+    const uint32_t left = t->strips - t->handed_out;
+    if (t->closed || left == 0)
         return false;
-    for (uint32_t i = 0; i < n && parts; i++)
-        parts[i] = (struct ranks_part){t->handed[first + i].values, t->handed[first + i].count};
+    *u = (struct ranks_unit){t->first, t->samples, t->strip + t->handed_out,
+                             left < t->of_unit ? left : t->of_unit};
+    t->handed_out += u->tiles;
     return true;
 }
 
-static void take(void *user, uint32_t unit, uint32_t part, const double *values, size_t count) {
+static bool work(void *user, const struct ranks_unit *u, struct ranks_part *parts, uint32_t *count) {
     struct tracing *t = user;
-    edit_sums_take(t->sums, t->strip + unit * t->of_unit + part, values, count);
+    const volatile sig_atomic_t *stop = t->run->p->tracer.stop;
+    forget_handed(t);
+    *count = u->tiles;
+    if ((stop && *stop) ||
+        !tracer_run(t->tracer, u->tile, u->tiles, (uint32_t)u->first, u->count) || (stop && *stop))
+        return false;
+    for (uint32_t i = 0; i < u->tiles && parts; i++)
+        parts[i] = (struct ranks_part){t->handed[u->tile + i].values, t->handed[u->tile + i].count};
+    return true;
 }
 
-static void tell(void *user, uint32_t units) {
-    const struct tracing *t = user;
+static void take(void *user, const struct ranks_unit *u, uint32_t part, const double *values,
+                 size_t count) {
+    struct tracing *t = user;
+    edit_sums_take(t->sums, u->tile + part, values, count);
+}
+
+static void finish(void *user, const struct ranks_unit *u, bool whole) {
+    struct tracing *t = user;
     const struct run *r = t->run;
+    t->closed = t->closed || !whole;
+    t->done += whole ? u->tiles : 0;
     const struct job_options *o = &r->options->job;
-    const double done = fmin((double)units * t->of_unit / t->strips, 1);
+    const double done = (double)t->done / t->strips;
     double share = (t->first - r->first + t->samples * done) / (r->end - r->first);
     if (o->seconds > 0)
         share = fmax(share, (time_seconds() - r->start) / o->seconds);
@@ -111,10 +126,8 @@ static bool trace(struct run *r, uint32_t strip, uint32_t strips, uint32_t first
     r->layout.sums.handed = t.handed;
     t.sums = edit_sums_create(&r->layout.sums);
     t.tracer = tracer_create(&r->p->tracer, edit_sums_sink, t.sums);
-    const struct ranks_work w = {.units = (strips + t.of_unit - 1) / t.of_unit,
-                                 .most_parts = t.of_unit, .work = work, .take = take,
-                                 .progress = tell, .user = &t};
-    const bool whole = r->options->dry_run ? ranks_work_alone(&w) : ranks_share(&w);
+    const struct ranks_work w = {t.of_unit, next, work, take, finish, &t};
+    (r->options->dry_run ? ranks_work_alone : ranks_share)(&w);
     const struct tracer_counts n = tracer_count(t.tracer);
     uint64_t counts[3] = {n.paths, n.rays + n.shadow_rays, edit_sums_rejected(t.sums)};
     ranks_sum(counts, 3);
@@ -125,7 +138,7 @@ static bool trace(struct run *r, uint32_t strip, uint32_t strips, uint32_t first
     mem_free(t.handed);
     tracer_destroy(t.tracer);
     edit_sums_destroy(t.sums);
-    return whole;
+    return ranks_index() > 0 || t.done == strips;
 }
 
 // ---- passes -----------------------------------------------------------------------------------

@@ -16,6 +16,12 @@ int ranks_count(void);
 
 // ---- any work in units --------------------------------------------------------------------------
 
+// Samples [first, first + count) of tiles [tile, tile + tiles). count > 0.
+struct ranks_unit {
+    uint64_t first;
+    uint32_t count, tile, tiles;
+};
+
 // Numbers that a part of a unit leaves.
 struct ranks_part {
     const double *values;
@@ -23,20 +29,24 @@ struct ranks_part {
 };
 
 struct ranks_work {
-    uint32_t units, most_parts; // of a unit
+    uint32_t most_parts; // of a unit
+    // Rank 0: the unit to be worked on next. false: none, for now or, if none is worked on, ever.
+    bool (*next)(void *user, struct ranks_unit *unit);
     // Works on a unit. Elsewhere than on rank 0 it leaves parts to be sent there: they stay as they are
-    // until the next call. false: given up, and so is all work.
-    bool (*work)(void *user, uint32_t unit, struct ranks_part *parts, uint32_t *count);
+    // until the next call. false: given up.
+    bool (*work)(void *user, const struct ranks_unit *unit, struct ranks_part *parts,
+                 uint32_t *count);
     // Rank 0 gets a part from another rank.
-    void (*take)(void *user, uint32_t unit, uint32_t part, const double *values, size_t count);
-    void (*progress)(void *user, uint32_t units); // rank 0: so many are done
+    void (*take)(void *user, const struct ranks_unit *unit, uint32_t part, const double *values,
+                 size_t count);
+    // Rank 0: a unit and all its parts are there, or it was given up.
+    void (*finish)(void *user, const struct ranks_unit *unit, bool done);
     void *user;
 };
 
-// Works on all units with the help of all ranks, which must all call it with the same work. On rank 0:
-// whether all were done.
-bool ranks_share(const struct ranks_work *w);
-bool ranks_work_alone(const struct ranks_work *w); // the same by one rank
+// Works on all units with the help of all ranks, which must all call it with the same work.
+void ranks_share(const struct ranks_work *w);
+void ranks_work_alone(const struct ranks_work *w); // the same by one rank
 // Gives all ranks what rank 0 has.
 void ranks_broadcast(void *data, size_t size);
 // Leaves the sums over all ranks on rank 0.

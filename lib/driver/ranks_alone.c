@@ -25,9 +25,31 @@ void rank_receive(int rank, int tag, void *data, size_t size) {
     (void)rank, (void)tag, (void)data, (void)size;
 }
 
-bool rank_waits(int tag, int *rank) {
-    (void)tag, (void)rank;
+struct rank_message *rank_message_create(void) {
+    return NULL;
+}
+
+void rank_message_destroy(struct rank_message *m) {
+    (void)m;
+}
+
+uint64_t *rank_message_room(struct rank_message *m, size_t words) {
+    (void)m, (void)words;
+    return NULL;
+}
+
+void rank_message_send(struct rank_message *m, int rank, int tag) {
+    (void)m, (void)rank, (void)tag;
+}
+
+bool rank_message_begin(struct rank_message *m, int tag, int *rank) {
+    (void)m, (void)tag, (void)rank;
     return false;
+}
+
+const uint64_t *rank_message_words(struct rank_message *m) {
+    (void)m;
+    return NULL;
 }
 
 void ranks_broadcast(void *data, size_t size) {
@@ -36,9 +58,4 @@ void ranks_broadcast(void *data, size_t size) {
 
 void ranks_sum(uint64_t *values, size_t count) {
     (void)values, (void)count;
-}
-
-void ranks_render(struct film *film, const struct render_options *options,
-                  struct render_result *result) {
-    render(film, options, result);
 }

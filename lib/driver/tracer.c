@@ -176,6 +176,10 @@ struct tracer *tracer_create(const struct tracer_options *options,
     return t;
 }
 
+int tracer_threads(const struct tracer *t) {
+    return t->threads;
+}
+
 bool tracer_run(struct tracer *t, uint32_t tile, uint32_t tiles, uint32_t first, uint32_t count) {
     t->first_tile = tile;
     t->first = first;

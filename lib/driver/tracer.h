@@ -34,8 +34,9 @@ struct tracer;
 // make_sink is called once per worker; the tracer destroys the sinks.
 struct tracer *tracer_create(const struct tracer_options *options,
                              struct sink *(*make_sink)(void *context), void *context);
-// Traces samples (steps of the map) [first, first + count) of tiles [tile, tile + tiles), in order for each pixel. false:
-// given up because of a stop; some tiles were not closed.
+int tracer_threads(const struct tracer *t);
+// Traces samples (steps of the map) [first, first + count) of tiles [tile, tile + tiles), in order
+// for each pixel. false: given up because of a stop; some tiles were not closed.
 bool tracer_run(struct tracer *t, uint32_t tile, uint32_t tiles, uint32_t first, uint32_t count);
 struct tracer_counts tracer_count(const struct tracer *t);
 void tracer_destroy(struct tracer *t);
