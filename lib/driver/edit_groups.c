@@ -20,17 +20,44 @@ uint64_t edit_groups_count(uint32_t classes, uint32_t bounces, uint64_t coarse) 
 
 // ---- factors --------------------------------------------------------------------------------
 
-// Coefficients of a term's coarse curve, which is the one of its first axis.
+// The axis of a term's coarse curve: the first that has several functions.
+static enum form_slot_name coarse_slot(const struct form *f, uint32_t term) {
+    return symbolic_bins(f, term, SLOT_A) > 1 ? SLOT_A : SLOT_B;
+}
+
+// Coefficients of that curve.
 static uint32_t coarse_bins(const struct form *f, uint32_t term, uint32_t most) {
-    const uint32_t a = symbolic_bins(f, term, SLOT_A), b = symbolic_bins(f, term, SLOT_B);
-    const uint32_t fine = a > 1 ? a : b;
+    const uint32_t fine = symbolic_bins(f, term, coarse_slot(f, term));
     return fine < most ? fine : most;
+}
+
+// Whether highlights are at 0.
+static bool has_lobe(const struct gamma *g) {
+    return g->kind == GAMMA_THETA_R || (gamma_is_half(g->kind) && g->kind != GAMMA_PHI_H);
+}
+
+// The first function of coarse bin k, where each has one at least. A highlight is narrow where the
+// later hops of a sharp edit need it to be, so bins widen from 0 on as quadratic knots do.
+static uint32_t coarse_first(const struct form *f, uint32_t term, uint32_t bins, uint32_t k) {
+    const enum form_slot_name slot = coarse_slot(f, term);
+    const uint32_t fine = symbolic_bins(f, term, slot);
+    uint64_t n = k, all = bins;
+    if (fine > 1 && has_lobe(&f->term[term].slots[slot].gamma) &&
+        edit_basis(f, &f->term[term].slots[slot])->spacing == SPACING_UNIFORM) {
+        n *= n;
+        all *= all;
+    }
+    const uint32_t at = (uint32_t)((n * fine + all - 1) / all);
+    return at < k ? k : at;
 }
 
 // The coarse coefficient that a place of a term belongs to.
 static uint32_t coarse_of(const struct form *f, uint32_t term, uint32_t place, uint32_t bins) {
-    const uint32_t a = symbolic_bins(f, term, SLOT_A), b = symbolic_bins(f, term, SLOT_B);
-    return a > 1 ? place / b * bins / a : place * bins / b;
+    const uint32_t j = coarse_slot(f, term) == SLOT_A ? place / symbolic_bins(f, term, SLOT_B) : place;
+    uint32_t k = 0;
+    while (k + 1 < bins && coarse_first(f, term, bins, k + 1) <= j)
+        k++;
+    return k;
 }
 
 static uint32_t add_factor(struct edit_groups *g, struct edit_factor f) {
@@ -171,10 +198,10 @@ static double border(const struct basis *b, uint32_t j) {
 }
 
 static void describe_knots(const struct form *f, uint32_t term, uint32_t bins, struct json *knots) {
-    const enum form_slot_name slot = symbolic_bins(f, term, SLOT_A) > 1 ? SLOT_A : SLOT_B;
+    const enum form_slot_name slot = coarse_slot(f, term);
     const uint32_t fine = symbolic_bins(f, term, slot);
     for (uint32_t k = 0; k <= bins; k++) {
-        const uint32_t j = (k * fine + bins - 1) / bins; // the first function of bin k
+        const uint32_t j = coarse_first(f, term, bins, k);
         json_append_number(knots, fine > 1 ? border(edit_basis(f, &f->term[term].slots[slot]), j)
                                            : CURVE_END * k);
     }

@@ -163,6 +163,45 @@ static void two_curves(void) {
     arena_finish(&arena);
 }
 
+// How many functions of the eye's hop each coarse bin of a form's first term has.
+static void coarse_widths(struct form *f, uint32_t fine, uint32_t coarse, uint32_t *widths) {
+    struct edit_object object = {.form = f};
+    const struct edit_plan plan = {.objects = &object, .count = 1};
+    const uint32_t series[2] = {fine, coarse};
+    struct edit_groups g;
+    CHECK(edit_groups_init(&g, &plan, NULL, series, 2));
+    uint32_t before = 0;
+    for (uint32_t j = 0; j < fine; j++) {
+        const uint32_t bin = g.factors[g.last[g.second[0][j]]].bin;
+        CHECK(bin < coarse && bin >= before);
+        widths[before = bin]++;
+    }
+    edit_groups_finish(&g);
+}
+
+// Bins of the second hop widen with the distance from a highlight, and none is empty.
+static void coarse_bins_widen(void) {
+    struct arena arena = {0};
+    const uint32_t wanted[8] = {2, 6, 10, 14, 18, 22, 26, 30};
+    struct form lobe = form_of(&arena, "blinnphong", 20, 0, 128, BASIS_BOX);
+    uint32_t widths[8] = {0};
+    coarse_widths(&lobe, 128, 8, widths);
+    for (int k = 0; k < 8; k++)
+        CHECK(widths[k] == wanted[k]);
+    for (uint32_t coarse = 2; coarse <= 16; coarse++) {
+        struct form narrow = form_of(&arena, "phong", 20, 0, 16, BASIS_HAT);
+        uint32_t n[16] = {0};
+        coarse_widths(&narrow, 16, coarse, n);
+        for (uint32_t k = 0; k < coarse; k++)
+            CHECK(n[k] > 0);
+    }
+    struct form even = form_of(&arena, "lightview", 0, 0, 64, BASIS_BOX);
+    uint32_t equal[8] = {0};
+    coarse_widths(&even, 64, 8, equal);
+    CHECK(equal[0] == 8 && equal[7] == 8);
+    arena_finish(&arena);
+}
+
 static void albedos_are_integrals(void) {
     struct arena arena = {0};
     const struct {
@@ -197,6 +236,7 @@ int main(void) {
             groups_are_multisets(objects, bounces);
     groups_are_multisets(32, 3);
     CHECK(edit_groups_count(6, 4, 0) == 84 && edit_groups_count(3, 4, 24) == 241);
+    coarse_bins_widen();
     albedos_are_integrals();
     two_curves();
     return check_result();
