@@ -18,6 +18,8 @@ size_t param_text_size(const struct param *p) {
     case PARAM_INT:
     case PARAM_CHOICE: return sizeof(int);
     case PARAM_FLOAT: return sizeof(float);
+    case PARAM_STRING:
+    case PARAM_FILE: return sizeof(const char *);
     default: return 0;
     }
 }
@@ -66,6 +68,10 @@ bool param_parse(const struct param *p, const char *text, void *value) {
         return parse_bool(p, text, value);
     if (p->type == PARAM_CHOICE)
         return parse_choice(p, text, value);
+    if (p->type == PARAM_STRING || p->type == PARAM_FILE) {
+        memcpy(value, &text, sizeof text);
+        return true;
+    }
     if (!parse_number(p, text, &number))
         return false;
     if (p->type == PARAM_INT)

@@ -6,7 +6,8 @@
 
 enum { PARAM_VALUE_BYTES = 8 }; // room for any value that a word can give
 
-// Whether a word can give a value of this type: truth values, numbers, choices.
+// Whether a word can give a value of this type: truth values, numbers, choices, and texts,
+// which are not copied; a file's name goes from the working directory.
 bool param_takes_text(const struct param *p);
 // Bytes of such a value.
 size_t param_text_size(const struct param *p);

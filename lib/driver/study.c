@@ -155,6 +155,14 @@ static bool measure(struct study *study, struct study_point *p, const struct ima
     return p->thumbnail && p->difference;
 }
 
+// What the method keeps, where it says so; else the most that was in use.
+static double bytes_of(const struct job *job, size_t before) {
+    const struct object *method = job->scene->integrator;
+    if (integrator_type_of(method)->bytes)
+        return (double)integrator_type_of(method)->bytes(method->data);
+    return resident_peak() > before ? (double)(resident_peak() - before) : 0;
+}
+
 // All runs of one setting. false after an error message.
 static bool run_point(struct study *study, const struct study_combination *c, size_t index,
                       int repeat, struct progress_state *progress) {
@@ -181,7 +189,7 @@ static bool run_point(struct study *study, const struct study_combination *c, si
         p->run_count++;
         progress->done += progress->current;
         if (i == 0)
-            p->bytes = resident_peak() > before ? (double)(resident_peak() - before) : 0;
+            p->bytes = bytes_of(&job, before);
     }
     job_close(&job);
     good = good || is_stopped(o);

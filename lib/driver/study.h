@@ -47,7 +47,8 @@ struct study_point {
     double cpu_seconds;       // mean of the runs
     double load_seconds;      // reading the scene and building
     double samples;           // of a pixel, in a run
-    double bytes;             // most memory in use, beyond what was before reading; 0: not known
+    double bytes;             // what the method says it keeps, else the most memory in use, beyond
+                              // what was before reading; 0: not known
     bool front_seconds, front_bytes; // nothing else is as good in both
     size_t series;
     char *thumbnail, *difference;    // of the first run: PNG as data: URIs

@@ -58,6 +58,8 @@ struct integrator_type {
     // Looks at the world before anything is traced; what it makes lives in the arena. false after an
     // error message. NULL: nothing to do. (integrator_enter reaches nested ones.)
     bool (*enter)(struct object *self, const struct world *w, struct arena *arena);
+    // What it has to keep for its picture, after enter. NULL: it is not what it keeps that counts.
+    uint64_t (*bytes)(const void *data);
     uint32_t most_lanes; // of one call; 0: SINK_LANES
     bool sees_media;
     bool meters; // heeds path_start.surface, or its nested integrator does

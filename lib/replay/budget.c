@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "base/mem.h"
 #include "kernels/tile.h"
 #include "replay/budget_data.h"
@@ -29,7 +30,7 @@ static void weigh_picture(struct budget *b, int trial) {
     double mean = 0;
     for (size_t i = 0; i < n; i++)
         mean += (double)b->picture[trial][i] / (double)n;
-    const double unit = mean > 0 ? 1 / mean : 1;
+    const double unit = b->unit[trial] = mean > 0 ? 1 / mean : 1;
     for (size_t i = 0; i < n; i++) {
         const double v = unit * (double)b->picture[trial][i];
         b->loss[trial][i] = (float)(1 / ((v * v + 1e-3) * (double)n));
@@ -224,10 +225,9 @@ static struct json *describe(const struct budget *b, const struct budget_report 
     return meta;
 }
 
-static bool write_file(struct budget *b, const char *output, struct budget_report *r) {
+// The tensor in the ways that were chosen, without its values and metadata.
+static struct tensor shape_tensor(struct budget *b, struct budget_report *r) {
     struct tensor shape = *b->tensor;
-    struct json *meta = describe(b, r);
-    shape.meta = meta;
     shape.fixed_sums = NULL;
     shape.blocks = arena_alloc(&b->arena, (shape.block_count + 1) * sizeof *shape.blocks);
     for (uint32_t i = 0; i < shape.block_count; i++) {
@@ -236,6 +236,13 @@ static bool write_file(struct budget *b, const char *output, struct budget_repor
         r->bytes += tensor_block_bytes(&shape.blocks[i]);
         r->float_bytes += tensor_value_count(&shape.blocks[i]) * sizeof(float);
     }
+    return shape;
+}
+
+static bool write_file(struct budget *b, const char *output, struct budget_report *r) {
+    struct tensor shape = shape_tensor(b, r);
+    struct json *meta = describe(b, r);
+    shape.meta = meta;
     struct tensor_writer *w = tensor_create(output, &shape);
     for (uint32_t i = 0; w && i < shape.block_count; i++) {
         fill(&b->blocks[i], &shape.blocks[i].value_rows, false, tensor_values(w, i));
@@ -271,9 +278,15 @@ static bool has_halves(const struct budget *b) {
     return has;
 }
 
-static bool store(struct budget *b, struct edit_tensor *e, const char *output, struct budget_report *r) {
-    make_blocks(b, e);
-    make_trials(b, e);
+static void free_blocks(struct budget *b) {
+    for (uint32_t i = 0; i < b->tensor->block_count; i++) {
+        mem_free(b->blocks[i].unpacked[0]);
+        mem_free(b->blocks[i].unpacked[1]);
+        mem_free(b->blocks[i].costs);
+    }
+}
+
+static bool store(struct budget *b, const char *output, struct budget_report *r) {
     if (has_halves(b)) {
         double unused[TRIALS];
         r->noise = told_noise(b, false, 0);
@@ -283,27 +296,76 @@ static bool store(struct budget *b, struct edit_tensor *e, const char *output, s
     r->rgbe = rgbe_error(b);
     r->worst = search(b, false, b->options->relmse, r->relmse);
     count_rows(b, r);
-    const bool written = write_file(b, output, r);
-    for (uint32_t i = 0; i < b->tensor->block_count; i++) {
-        mem_free(b->blocks[i].unpacked[0]);
-        mem_free(b->blocks[i].unpacked[1]);
-        mem_free(b->blocks[i].costs);
+    return write_file(b, output, r);
+}
+
+// The picture of a trial, with what the ways that were chosen change in it.
+static void picture(struct budget *b, int trial, float *frame, struct budget_report *r) {
+    float *error[TRIALS];
+    for (int t = 0; t < TRIALS; t++)
+        error[t] = mem_array(3 * plane_of(b), sizeof *error[t]);
+    if (b->options->relmse > 0) {
+        r->worst = search(b, false, b->options->relmse, r->relmse);
+        shape_tensor(b, r);
+        budget_pictures(b, false, true, error);
+    } else {
+        for (uint32_t i = 0; i < b->tensor->block_count; i++)
+            r->value_bytes += tensor_bytes(&b->tensor->blocks[i]);
     }
-    return written;
+    for (size_t i = 0; i < 3 * plane_of(b); i++)
+        frame[i] = b->picture[trial][i] + (float)((double)error[trial][i] / b->unit[trial]);
+    for (int t = 0; t < TRIALS; t++)
+        mem_free(error[t]);
+}
+
+struct opened {
+    struct tensor_file *file;
+    struct edit_tensor edit;
+    struct budget budget;
+};
+
+static bool open_budget(struct opened *s, const char *path, const struct budget_options *o) {
+    *s = (struct opened){.file = tensor_open(path)};
+    s->budget = (struct budget){.tensor = s->file ? tensor_get(s->file) : NULL, .options = o};
+    if (!s->file || !tensor_check_values(s->file) ||
+        !edit_tensor_init(&s->edit, s->budget.tensor, path))
+        return false;
+    make_blocks(&s->budget, &s->edit);
+    make_trials(&s->budget, &s->edit);
+    return true;
+}
+
+static void close_budget(struct opened *s) {
+    if (s->budget.blocks)
+        free_blocks(&s->budget);
+    if (s->edit.tensor)
+        edit_tensor_finish(&s->edit);
+    arena_finish(&s->budget.arena);
+    tensor_close(s->file);
 }
 
 bool budget_store(const char *path, const char *output, const struct budget_options *o,
                   struct budget_report *report) {
-    struct tensor_file *f = tensor_open(path);
-    struct edit_tensor e = {0};
-    struct budget b = {.tensor = f ? tensor_get(f) : NULL, .options = o};
-    bool done = false;
+    struct opened s;
     *report = (struct budget_report){0};
-    if (f && tensor_check_values(f) && edit_tensor_init(&e, b.tensor, path))
-        done = store(&b, &e, output, report);
-    if (e.tensor)
-        edit_tensor_finish(&e);
-    arena_finish(&b.arena);
-    tensor_close(f);
+    const bool done = open_budget(&s, path, o) && store(&s.budget, output, report);
+    close_budget(&s);
+    return done;
+}
+
+bool budget_picture(const char *path, const struct budget_options *o, int trial, int width, int height,
+                    float *frame, struct budget_report *report) {
+    struct opened s;
+    *report = (struct budget_report){0};
+    bool done = open_budget(&s, path, o);
+    const struct tensor *t = s.budget.tensor;
+    if (done && (t->width != (uint32_t)width || t->height != (uint32_t)height)) {
+        log_error("%s: expected a picture of %dx%d, found one of %ux%u", path, width, height, t->width,
+                  t->height);
+        done = false;
+    }
+    if (done)
+        picture(&s.budget, trial, frame, report);
+    close_budget(&s);
     return done;
 }

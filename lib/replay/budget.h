@@ -34,3 +34,9 @@ struct budget_report {
 // false after an error message.
 bool budget_store(const char *path, const char *output, const struct budget_options *o,
                   struct budget_report *report);
+
+// The picture of a trial that the tensor would give if it were stored so, three planes; nothing is
+// written. A budget of 0: the tensor as it is. Of the report: value_bytes, relmse and worst. false
+// after an error message: also if the tensor is of another size.
+bool budget_picture(const char *path, const struct budget_options *o, int trial, int width, int height,
+                    float *frame, struct budget_report *report);

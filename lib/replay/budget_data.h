@@ -22,6 +22,7 @@ struct budget {
     struct budget_block *blocks;
     float **weights[TRIALS]; // [block][coefficient][channel], over the mean of the picture
     float *picture[TRIALS];  // 3 planes
+    double unit[TRIALS];     // 1 / mean
     float *loss[TRIALS];     // what a squared error of a pixel's channel, over the mean, adds to relMSE
     struct arena arena;
 };

@@ -118,6 +118,22 @@ print([q["relmse"]["value"] for q in json.load(open(sys.argv[1]))["points"]])' \
 done
 cmp -s "$folder/again1.txt" "$folder/again2.txt" || fail "threads change the numbers"
 
+# The storage of a tensor: no noise, errors within each budget, and the bytes that it takes.
+tensor=$(dirname "$relume")/../tests/polynomial.safetensors # the build makes it
+expect 0 "$relume" edit "$tensor" -o "$folder/tensor.exr" -q
+size=$("$relume" info "$folder/tensor.exr" | awk '/^width:/ { w = $2 } /^height:/ { print w "x" $2; exit }')
+expect 0 "$relume" study "$scene" --size "$size" --vary integrator=stored --vary "filename=$tensor" \
+    --vary budget=1e-3,1e-4,1e-6 --vary spp=1 --repeat 2 --reference "$folder/tensor.exr" -q -o "$folder/stored"
+holds "$folder/stored/study.json" 'all(0 < q["relmse"]["value"] <= x for q, x in zip(p, (1e-3, 1e-4, 1e-6)))'
+holds "$folder/stored/study.json" '0 < p[0]["bytes"] < p[1]["bytes"] < p[2]["bytes"]'
+holds "$folder/stored/study.json" 'all(abs(q["variance"]["value"]) < 1e-12 for q in p)'
+expect 1 "$relume" study "$scene" --size 5x4 --vary integrator=stored --vary "filename=$tensor" \
+    --vary budget=1e-3 --vary spp=1 --repeat 2 --reference-spp 4 -o "$folder/stored"
+contains "$err" "picture of 5x4"
+expect 1 "$relume" study "$scene" --size "$size" --vary integrator=stored --vary budget=1e-3 --vary spp=1 \
+    --repeat 2 --reference "$folder/tensor.exr" -o "$folder/stored"
+contains "$err" "filename"
+
 # Ctrl-C writes what there is.
 "$relume" study "$scene" --size 24x24 --vary spp=1,1000000 --reference-spp 64 -q \
     -o "$folder/stopped" 2>"$folder/err" &
