@@ -51,7 +51,7 @@ static const struct option_spec options[] = {
      .def = "kept", .help = "at later hops edits change how much a surface reflects, not where to, which\n"
      "is as it was (kept), or Lambertian (lambertian)"},
     {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
-     .help = "" BUDGET_HELP},
+     .help = "" BUDGET_HELP "; drops what\n--time and --noise would keep to go on"},
     OPTION_GROUP("precompute edit --direct"),
     {.name = "direct", .type = OPTION_FLAG, .offset = AT(direct),
      .help = "direct light only, by triangles of the sky"},
@@ -196,9 +196,9 @@ static int run(const void *values, const char *command) {
         return EXIT_USAGE;
     }
     double relmse = 0;
-    if (v->budget && (!edit || v->half || precompute_is_progressive(v))) {
-        log_error("--budget goes with edit, without --half and without sums that are kept (--samples, "
-                  "--time, --noise, --checkpoint, --resume); store those by `relume tensor requantise --budget`");
+    if (v->budget && (!edit || v->half || v->samples || v->checkpoint > 0 || v->resume)) {
+        log_error("--budget goes with edit, without --half and where nothing is to be gone on with (--samples, "
+                  "--checkpoint, --resume keep sums); store those by `relume tensor requantise --budget`");
         return EXIT_USAGE;
     }
     if (v->budget && !budget_parse(v->budget, &relmse))
@@ -215,7 +215,9 @@ static int run(const void *values, const char *command) {
                                                : run_relight(v, command, defines);
     ranks_finish();
     arena_finish(&arena);
-    if (code == EXIT_DONE && v->budget && ranks_index() == 0 && !v->dry_run && !budget_run(&(struct budget_run){
+    // What --time or --noise has ended is whole; what a signal has ended keeps its sums.
+    const bool whole = code == EXIT_DONE || (code == EXIT_UNCONVERGED && !*stop_on_signals());
+    if (whole && v->budget && ranks_index() == 0 && !v->dry_run && !budget_run(&(struct budget_run){
             .tensor = v->output, .output = v->output, .command = command, .relmse = relmse,
             .threads = v->threads, .quiet = v->quiet, .json = v->json}))
         code = EXIT_FAILED;

@@ -11,6 +11,7 @@ relume=$(realpath "$1")
 # shellcheck source=tests/tool/pictures.sh
 . "$(dirname "${BASH_SOURCE[0]}")/pictures.sh"
 
+scene=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../../data/scenes/cornell-glossy/scene.xml")
 tensors=$(dirname "$relume")/../tests # files that the build makes
 cd "$folder" || exit 1
 cp "$tensors/polynomial.safetensors" t.safetensors
@@ -93,4 +94,16 @@ expect 1 "$relume" tensor requantise "$tensors/relight.safetensors" -o u.safeten
 contains "$err" "precompute edit"
 expect 2 "$relume" precompute relight none.xml -o u.safetensors --budget relmse=1e-3
 expect 2 "$relume" precompute edit none.xml -o u.safetensors --budget relmse=1e-3 --half
+
+# A limit of noise goes with a budget, and leaves no sums; what is to be gone on with does not.
+expect 0 "$relume" precompute edit "$scene" -o noise.safetensors --size 8x8 --bounces 2 --series 8,1 --spp 64 \
+    --noise 10 --budget relmse=1e-3 -q
+expect 0 "$relume" tensor info noise.safetensors
+contains "$out" "storage relmse"
+expect 1 "$relume" precompute edit "$scene" -o noise.safetensors --size 8x8 --bounces 2 --series 8,1 --spp 128 --resume -q
+contains "$err" "sums"
+for option in --resume "--checkpoint 5" "--samples 0:64"; do
+    # shellcheck disable=SC2086
+    expect 2 "$relume" precompute edit none.xml -o u.safetensors --budget relmse=1e-3 $option
+done
 finish
