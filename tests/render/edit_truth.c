@@ -213,10 +213,10 @@ static void four_bounces(void) {
 int main(void) {
     scene_folder_open();
     snprintf(tensor_path, sizeof tensor_path, "%s", scene_path("t.safetensors"));
-    if (full_mode()) {
-        side = 48;
+    if (full_mode()) { // two minutes of one core
+        side = 32;
         tensor_spp = 1024;
-        reference_spp = 4096;
+        reference_spp = 2048;
     }
     two_bounces();
     if (full_mode())
