@@ -197,19 +197,22 @@ static double border(const struct basis *b, uint32_t j) {
     return j < b->count ? 0.5 * (b->knots[j - 1] + b->knots[j]) : b->knots[j - 1];
 }
 
-static void describe_knots(const struct form *f, uint32_t term, uint32_t bins, struct json *knots) {
-    const enum form_slot_name slot = coarse_slot(f, term);
-    const uint32_t fine = symbolic_bins(f, term, slot);
-    for (uint32_t k = 0; k <= bins; k++) {
-        const uint32_t j = coarse_first(f, term, bins, k);
-        json_append_number(knots, fine > 1 ? border(edit_basis(f, &f->term[term].slots[slot]), j)
-                                           : CURVE_END * k);
-    }
+uint32_t edit_groups_coarse(const struct edit_groups *g, const struct form *f, uint32_t term,
+                            enum form_slot_name *slot, double *knots) {
+    const uint32_t bins = coarse_bins(f, term, g->coarse);
+    *slot = coarse_slot(f, term);
+    const uint32_t fine = symbolic_bins(f, term, *slot);
+    for (uint32_t k = 0; k <= bins; k++)
+        knots[k] = fine > 1 ? border(edit_basis(f, &f->term[term].slots[*slot]),
+                                     coarse_first(f, term, bins, k))
+                            : CURVE_END * k;
+    return bins;
 }
 
 void edit_groups_describe(const struct edit_groups *g, const struct edit_plan *plan,
                           const struct edit_classes *classes, struct json *meta) {
     struct json *factors = json_add_array(meta, "factors"), *groups = json_add_array(meta, "groups");
+    double *knots = mem_array(g->coarse + 1, sizeof *knots);
     for (uint32_t i = 0; i < g->factor_count; i++) {
         const struct edit_factor *f = &g->factors[i];
         struct json *j = json_append_object(factors);
@@ -221,9 +224,13 @@ void edit_groups_describe(const struct edit_groups *g, const struct edit_plan *p
         json_add_count(j, "object", f->object);
         json_add_count(j, "term", f->term);
         json_add_count(j, "bin", f->bin);
-        describe_knots(form, f->term, coarse_bins(form, f->term, g->coarse),
-                       json_add_array(j, "knots"));
+        enum form_slot_name slot;
+        const uint32_t bins = edit_groups_coarse(g, form, f->term, &slot, knots);
+        struct json *list = json_add_array(j, "knots");
+        for (uint32_t k = 0; k <= bins; k++)
+            json_append_number(list, knots[k]);
     }
+    mem_free(knots);
     for (uint32_t i = 0; i < g->count; i++) {
         uint32_t list[EDIT_MOST_BOUNCES];
         const uint32_t n = edit_group_factors(g, i, list);

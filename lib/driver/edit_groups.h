@@ -44,6 +44,11 @@ void edit_groups_finish(struct edit_groups *g);
 uint32_t edit_group_factors(const struct edit_groups *g, uint32_t group,
                             uint32_t factors[EDIT_MOST_BOUNCES]);
 
+// The coarse bins that a term's curve has at the second hop: their number (at most g->coarse), borders, one
+// more, and the axis they lie on.
+uint32_t edit_groups_coarse(const struct edit_groups *g, const struct form *f, uint32_t term,
+                            enum form_slot_name *slot, double *knots);
+
 // Adds "factors" and "groups" to the metadata.
 void edit_groups_describe(const struct edit_groups *g, const struct edit_plan *plan,
                           const struct edit_classes *classes, struct json *meta);

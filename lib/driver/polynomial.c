@@ -146,6 +146,26 @@ static void choose_later(struct polynomial *p, uint32_t object, enum polynomial_
                                 (float)(b[2] / albedo[2]));
 }
 
+// Draws the bins that the second hop tells apart, all as likely, so that a narrow one is not left
+// to the few samples of few fine bins.
+static void init_coarse(struct polynomial *p, struct symbolic_object *o) {
+    struct form coarse = *o->form;
+    for (uint32_t t = 0; t < coarse.terms; t++) {
+        enum form_slot_name slot;
+        double *knots = arena_alloc(&p->arena, (p->groups.coarse + 1) * sizeof *knots);
+        const uint32_t bins = edit_groups_coarse(&p->groups, o->form, t, &slot, knots);
+        if (!edit_term_has(&coarse.term[t], slot) || bins < 2)
+            continue;
+        struct curve *table = arena_alloc(&p->arena, sizeof *table);
+        const struct basis basis = {BASIS_BOX, SPACING_ANY, bins, knots};
+        *table = curve_make(&p->arena, &basis, 1);
+        for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
+            coarse.curve[coarse.term[t].slots[slot].curve].f[k] =
+                (struct curve_function){.kind = FUNCTION_TABLE, .table = table};
+    }
+    bin_sampler_init(&o->coarse, &coarse, &p->arena);
+}
+
 static void make_response(struct polynomial *p, const struct polynomial_options *options) {
     p->objects = arena_alloc(&p->arena, p->plan.count * sizeof *p->objects);
     for (uint32_t i = 0; i < p->plan.count; i++) {
@@ -154,6 +174,8 @@ static void make_response(struct polynomial *p, const struct polynomial_options 
         for (uint32_t t = 0; t < o->form->terms; t++)
             o->texture[t] = editable_texture(p->plan.objects[i].material, t);
         o->second = p->groups.second[i];
+        if (o->second)
+            init_coarse(p, o);
         choose_later(p, i, options->later);
     }
     symbolic_init(&p->response);

@@ -8,6 +8,7 @@
 struct basis_closure {
     struct closure head;
     const struct symbolic_object *object;
+    const struct bin_sampler *sampler;
     struct marks *to;           // [CHAIN_WAYS]
     const uint32_t *index;      // by place; NULL: the place itself
     spectrum texture[FORM_TERMS];
@@ -54,7 +55,7 @@ static void add_term(const struct basis_closure *c, uint32_t t, struct angles *a
 static float mark(const struct basis_closure *c, struct direction wi, enum chain_way way) {
     struct marks *m = &c->to[way];
     struct angles a = angles_between(c->view.wo, wi);
-    const float pdf = (float)fmin(bin_sampler_pdf_sa(&c->object->sampler, &c->view, wi, &a), 1e30);
+    const float pdf = (float)fmin(bin_sampler_pdf_sa(c->sampler, &c->view, wi, &a), 1e30);
     m->count = 0;
     for (uint32_t t = 0; t < c->object->form->terms && pdf > 0; t++)
         add_term(c, t, &a, 1 / pdf, m);
@@ -72,7 +73,7 @@ static spectrum basis_eval(const struct closure *closure, vec3 wi, float *pdf_sa
 static bool basis_sample(const struct closure *closure, float u1, struct vec2 u2,
                          struct bsdf_sample *s) {
     const struct basis_closure *c = (const void *)closure;
-    const struct direction wi = bin_sampler_sample(&c->object->sampler, &c->view, (double)u1,
+    const struct direction wi = bin_sampler_sample(c->sampler, &c->view, (double)u1,
                                                    (double)u2.x, (double)u2.y);
     s->wi = direction_round(wi);
     s->pdf_sa = cos_theta(s->wi) > 0 ? mark(c, direction_from(s->wi), CHAIN_PATH) : 0;
@@ -98,7 +99,8 @@ static const struct closure *resolve_basis(const struct symbolic_object *o, stru
     c->below = cos_theta(wo) < 0;
     if (c->below)
         wo[2] = -wo[2];
-    c->view = bin_sampler_view(&o->sampler, direction_from(wo));
+    c->sampler = index ? &o->coarse : &o->sampler;
+    c->view = bin_sampler_view(c->sampler, direction_from(wo));
     for (uint32_t t = 0; t < o->form->terms; t++)
         c->texture[t] = o->texture[t] ? texture_eval(o->texture[t], &s->point.at) : spectrum_grey(1);
     return &c->head;

@@ -22,6 +22,7 @@ struct symbolic_object {
     uint32_t first[FORM_TERMS]; // place of a term's first coefficient
     bool knows_view;            // some term has a curve over theta_o
     struct bin_sampler sampler;
+    struct bin_sampler coarse; // where `second` is: of the bins that it tells apart
     const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
     bool keeps;             // its material later, too; else it is Lambertian
     uint32_t factor;        // its albedo, or that of its class

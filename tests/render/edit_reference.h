@@ -92,6 +92,7 @@ struct reference_closure {
     uint32_t object;
     bool coarse;
     bool below;
+    const struct bin_sampler *sampler;
     struct bin_view view;
     spectrum texture[FORM_TERMS];
 };
@@ -138,7 +139,7 @@ static inline spectrum reference_eval(const struct closure *closure, vec3 wi, fl
     const struct direction i = direction_from(up);
     struct angles a = angles_between(c->view.wo, i);
     float other;
-    *pdf = (float)bin_sampler_pdf_sa(&e->p.objects[c->object].sampler, &c->view, i, &a);
+    *pdf = (float)bin_sampler_pdf_sa(c->sampler, &c->view, i, &a);
     return c->inside ? closure_eval(c->inside, wi, &other) : coarse_value(c, &a);
 }
 
@@ -148,8 +149,8 @@ static inline bool reference_sample(const struct closure *closure, float u1, str
     if (!c->inside && !c->coarse)
         s->wi = warp_cosine_hemisphere(u2);
     else
-        s->wi = direction_round(bin_sampler_sample(&c->edited->p.objects[c->object].sampler, &c->view,
-                                                   (double)u1, (double)u2.x, (double)u2.y));
+        s->wi = direction_round(bin_sampler_sample(c->sampler, &c->view, (double)u1, (double)u2.x,
+                                                   (double)u2.y));
     if (!(s->wi[2] > 0))
         return false;
     if (c->below)
@@ -188,7 +189,8 @@ static inline const struct closure *reference_resolve(const struct response *sel
     c->coarse = depth > 0 && first_later && e->p.objects[object].second;
     if (c->below)
         wo[2] = -wo[2];
-    c->view = bin_sampler_view(&e->p.objects[object].sampler, direction_from(wo));
+    c->sampler = c->coarse ? &e->p.objects[object].coarse : &e->p.objects[object].sampler;
+    c->view = bin_sampler_view(c->sampler, direction_from(wo));
     for (uint32_t t = 0; t < e->p.objects[object].form->terms; t++)
         c->texture[t] = texture_eval(e->p.objects[object].texture[t], &s->point.at);
     if (depth > 0)
