@@ -157,7 +157,7 @@ class Bench:
             scene = os.path.join(os.environ["RELUME_SHARED_DATA"], file[1:])
             self.more = [w for n in sum(objects.values(), []) for w in ("--edit", n)]
         self.run("precompute", "edit", scene, "-o", self.path("fine.safetensors"), "--direct", "--size",
-                 "8x8", "--spp", "1", "--lights", "64", "--light-samples", "2", "-D", "bins=1024", "-q", *self.more)
+                 "8x8", "--spp", "1", "--lights", "64", "--light-samples", "2", "-q", *(self.more or ("-D", "bins=1024")))
         return scene
 
     def bases(self, objects):
@@ -211,7 +211,7 @@ class Bench:
                     self.run("render", true, "-o", self.path("r.exr"), "-q", "--integrator", "path", "--max-depth",
                              str(bounces + 1), "--size", "%dx%d" % (o.size, o.size), "--crop", middle,
                              "--spp", str(4 * o.truth))
-                    light.append(self.run("compare", picture, self.path("r.exr"), "--json")["mean_ratio"]["value"])
+                    light.append(self.run("compare", picture, self.path("r.exr"), "--json")["mean"]["value"])
                 ratio = (1 - light[0]) / (light[1] - light[0])
                 rows.append({"scene": "ring", "series": series, "edit": sets, "caustic": ratio})
                 print("ring %-8s caustic %+.1f %%  %s" % (series, 100 * (ratio - 1), " ".join(sets)), flush=True)
