@@ -365,6 +365,18 @@ static bool build(struct building *b) {
     return true;
 }
 
+// The file and what it keeps beside itself; pictures are added where they are used.
+static bool hash_files(struct gltf *g, struct reader *r, const char *path) {
+    const struct json *buffers = json_get(g->root, "buffers");
+    bool ok = load_hash_file(r, path);
+    for (size_t i = 0; i < json_count(buffers) && ok; i++) {
+        const char *uri = json_text(json_get(json_at(buffers, i), "uri"));
+        if (uri && !gltf_is_data_uri(uri))
+            ok = load_hash_file(r, gltf_uri_path(g, uri, "/buffers"));
+    }
+    return ok;
+}
+
 struct xml_node *gltf_scene_tree(struct reader *r, const char *path) {
     struct gltf g;
     struct xml_node *scene = tree_add(r, NULL, "scene", NULL, NULL);
@@ -374,7 +386,7 @@ struct xml_node *gltf_scene_tree(struct reader *r, const char *path) {
         b.hi[k] = -INFINITY;
     }
     *LIST_ADD(&r->directories, const char *) = "."; // pictures are named by whole paths
-    bool ok = gltf_open(&g, path, r->arena) && load_hash_file(r, path);
+    bool ok = gltf_open(&g, path, r->arena) && hash_files(&g, r, path);
     const size_t meshes = ok ? json_count(json_get(g.root, "meshes")) : 0;
     b.uses = mem_array(meshes, sizeof *b.uses);
     b.groups = mem_array(meshes, sizeof *b.groups);

@@ -90,6 +90,26 @@ static void reads_two_sets_of_coordinates(void) {
     scene_destroy(s);
 }
 
+// Ranges of samples of two models are not united, also where only the file of numbers differs.
+static void hashes_what_lies_beside_it(void) {
+    float numbers[10] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5}; // the last one is not used
+    uint64_t hash[3] = {0};
+    for (int i = 0; i < 3; i++) {
+        numbers[9] = i < 2 ? 5 : 6;
+        CHECK(file_write(scene_path("numbers.bin"), numbers, sizeof numbers));
+        struct scene *s = read_model(
+            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"buffers\":[{\"byteLength\":40,\"uri\":"
+            "\"numbers.bin\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{"
+            "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
+            "\"max\":[1,1,0]}]," MESH "\"materials\":[{}],\"nodes\":[{\"mesh\":0}],"
+            "\"scenes\":[{\"nodes\":[0]}]}");
+        CHECK(s);
+        hash[i] = s ? s->hash : 0;
+        scene_destroy(s);
+    }
+    CHECK(hash[0] && hash[0] == hash[1] && hash[1] != hash[2]);
+}
+
 // The material that a model's only one becomes; "": none.
 static const char *material_of(const char *material) {
     static char name[64];
@@ -142,6 +162,7 @@ int main(void) {
     shares_a_mesh_by_instances();
     reads_cameras_lights_and_emission();
     reads_two_sets_of_coordinates();
+    hashes_what_lies_beside_it();
     follows_the_words_of_the_format();
     refuses_with_a_pointer();
     scene_folder_close();
