@@ -34,13 +34,12 @@ SCENES = {
     "teatray": ("bounces.xml", ["128,8,1", "128,1,1,1", "16,8,1,1"],
                 {"facets": ["teapot"], "gloss": ["tray", "handles"]}),
     "ring": ("scene.xml", ["64,16", "64,8", "64,1"], {"gloss": ["ring", "plane"]}),
-    "classroom": ("@scenes/bitterli/classroom/scene.xml", ["128,8,1"],
-                  {"facets": ["ChairWood", "Whiteboard3"], "even": ["Floor", "Wall", "Lectern"]}),
-    "veach-mis": ("@scenes/bitterli/veach-mis/scene_mitsuba3.xml", ["128,8,1", "128,1,1,1"],
-                  {"facets": ["SmoothBSDF", "GlossyBSDF", "RoughBSDF", "SuperRoughBSDF"],
-                   "even": ["DiffuseBSDF"]}),
+    "classroom": ("@scenes/bitterli/classroom/scene.xml", ["128,1,1"],
+                  {"cloth": ["ChairWood", "Whiteboard3"], "even": ["Floor", "Wall", "Lectern"]}),
+    "bitterli-box": ("@scenes/bitterli/cornell-box/scene_mitsuba05.xml", ["128,8,1", "128,1,1,1"],
+                     {"even": ["LeftWall", "RightWall", "Floor", "BackWall", "ShortBox", "TallBox"]}),
 }
-MARKS = {"128,8,1": 2e-3, "128,1,1,1": 1e-2}
+MARKS = {"128,8,1": 2e-3, "128,1,1,1": 1e-2, "128,1,1": 1e-2}
 
 
 def colour(r, most=0.9):
@@ -54,7 +53,9 @@ def exponent(r, most):
 def make_edit(r, objects, kind, most, bases):
     """Changes of one kind: what `relume edit --script` takes."""
     lobed = objects.get("gloss", []) + objects.get("facets", []) + objects.get("brushed", [])
-    name = r.choice(lobed)
+    if not lobed and (kind not in ("free-hand", "fresnel") or "cloth" not in objects):
+        kind = "colour"
+    name = r.choice(lobed or objects["even"])
     facets, brushed = name in objects.get("facets", []), name in objects.get("brushed", [])
     if kind == "colour":
         name = r.choice(sum(objects.values(), []))
