@@ -90,14 +90,32 @@ static void draw(const struct vertices *v, uint32_t purpose, wide u[2]) {
     }
 }
 
+// Lanes that have hit a light which counts; what the densities will need is sent for.
+static uint32_t find_emission(const struct world *w, const struct path *p,
+                              const struct vertices *v) {
+    uint32_t found = 0, from[WIDE_LANES], triangles[WIDE_LANES];
+    int n = 0;
+    for (uint32_t left = v->active; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const uint32_t light = w->shapes[v->hit[i]->shape].light;
+        const struct lane *l = v->lane[i];
+        if (light == SCENE_NONE || (l->from.depth == 0 && p->hide_emitters))
+            continue;
+        found |= 1u << i;
+        from[n] = light;
+        triangles[n] = v->hit[i]->primitive;
+        n += !l->from.delta;
+    }
+    world_prefetch_lights(w, from, triangles, n);
+    return found;
+}
+
 static void add_emission(struct trace_context *ctx, const struct path *p, const struct vertices *v,
                          const struct surfaces *s) {
-    for (uint32_t left = v->active; left; left &= left - 1) {
+    for (uint32_t left = find_emission(ctx->world, p, v); left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         const struct world_shape *shape = &ctx->world->shapes[v->hit[i]->shape];
         const struct lane *l = v->lane[i];
-        if (shape->light == SCENE_NONE || (l->from.depth == 0 && p->hide_emitters))
-            continue;
         const struct surface one = {.p = wide3_lane(&s->p, i), .ng = wide3_lane(&s->ng, i),
                                     .light = shape->light,
                                     .point.at = world_texture_point(shape, v->hit[i])};

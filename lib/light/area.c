@@ -145,6 +145,10 @@ static bool part_sample(const void *data, uint32_t part, vec3 p, struct vec2 u,
     return true;
 }
 
+static void part_prefetch(const void *data, uint32_t part) {
+    area_mesh_prefetch(&((const struct area *)data)->mesh, part);
+}
+
 static float part_pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
     (void)p;
     return area_mesh_part_pdf_sa(&((const struct area *)data)->mesh, hit);
@@ -190,5 +194,5 @@ const struct light_type light_area = {
     .prepare = prepare, .sample = sample, .sample_wide = sample_wide, .has_wide = has_wide,
     .emission = emission, .pdf_sa = pdf_sa, .power = power,
     .bounds = bounds, .parts = parts, .part_sample = part_sample, .part_pdf_sa = part_pdf_sa,
-    .finish = finish,
+    .part_prefetch = part_prefetch, .finish = finish,
 };

@@ -283,6 +283,15 @@ bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle, vec3 p,
     return area_finish_sample(p, (float)(1 / triangle_area(a->mesh, triangle)), s);
 }
 
+void area_mesh_prefetch(const struct area_mesh *a, uint32_t triangle) {
+    for (int k = 0; k < 3; k++) {
+        const uint32_t v = a->mesh->indices[triangle][k];
+        __builtin_prefetch(a->mesh->positions[v]);
+        if (a->mixed)
+            __builtin_prefetch(a->mesh->normals[v]);
+    }
+}
+
 float area_mesh_part_pdf_sa(const struct area_mesh *a, const struct light_hit *hit) {
     return area_to_solid_angle((float)(1 / triangle_area(a->mesh, hit->at.triangle)), hit->distance,
                                fabsf(dot(hit->ng, hit->wi)));

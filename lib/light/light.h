@@ -83,6 +83,8 @@ struct light_type {
     bool (*part_sample)(const void *data, uint32_t part, vec3 p, struct vec2 u,
                         struct light_sample *s);
     float (*part_pdf_sa)(const void *data, vec3 p, const struct light_hit *hit);
+    // Sends for the memory that part_sample will need, without waiting for it. NULL: it is little.
+    void (*part_prefetch)(const void *data, uint32_t part);
     void (*finish)(void *data); // NULL: nothing to do
 };
 

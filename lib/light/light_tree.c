@@ -13,6 +13,9 @@ static const float SLACK = 1e-2f;
 // have tilted the normal it really uses.
 static const float LEAST_COSINE = 0.0625f;
 
+// So many stay in the cache of a core: nothing is sent for.
+enum { FEW_NODES = 256 };
+
 typedef uint16_t wide_u16 __attribute__((vector_size(32)));
 typedef int16_t wide_i16 __attribute__((vector_size(32)));
 
@@ -121,28 +124,90 @@ static inline int table_choose(const struct table *t, double *x) {
     return last;
 }
 
+// All lines of a node at once.
+static inline void prefetch_node(const struct light_node *node) {
+    for (size_t k = 0; k < sizeof *node; k += 64)
+        __builtin_prefetch((const char *)node + k);
+    __builtin_prefetch((const char *)(node + 1) - 1);
+}
+
+struct descent {
+    double u, probability;
+    uint32_t child;
+};
+
+// One node further down. false: none of its children gives light.
+static inline bool descend(const struct light_tree *t, const struct light_place *at,
+                           struct descent *d) {
+    const struct light_node *node = &t->nodes[d->child];
+    const struct table values = table_of(importance(node, at));
+    const double sum = values.column[3];
+    if (!(sum > 0))
+        return false;
+    double x = d->u * sum;
+    const int i = table_choose(&values, &x);
+    d->child = node->child[i];
+    x /= table_value(&values, i);
+    d->u = x > 0 ? x < END ? x : END : 0;
+    d->probability *= table_value(&values, i) / sum;
+    return true;
+}
+
 bool light_tree_choose(const struct light_tree *t, const struct light_place *at, double u,
                        uint32_t *item, float *pmf) {
-    double probability = 1;
+    struct descent d = {.u = u, .probability = 1};
     if (t->node_count == 0)
         return false;
-    uint32_t child = 0;
-    while (!(child & LIGHT_TREE_LEAF)) {
-        const struct light_node *node = &t->nodes[child];
-        const struct table values = table_of(importance(node, at));
-        const double sum = values.column[3];
-        if (!(sum > 0))
+    while (!(d.child & LIGHT_TREE_LEAF))
+        if (!descend(t, at, &d))
             return false;
-        double x = u * sum;
-        const int i = table_choose(&values, &x);
-        child = node->child[i];
-        x /= table_value(&values, i);
-        u = x > 0 ? x < END ? x : END : 0;
-        probability *= table_value(&values, i) / sum;
-    }
-    *item = child - LIGHT_TREE_LEAF;
-    *pmf = (float)probability;
+    *item = d.child - LIGHT_TREE_LEAF;
+    *pmf = (float)d.probability;
     return *pmf > 0;
+}
+
+uint32_t light_tree_choose_lanes(const struct light_tree *t, uint32_t wanted,
+                                 const struct light_place at[WIDE_LANES],
+                                 const double u[WIDE_LANES], uint32_t item[WIDE_LANES],
+                                 float pmf[WIDE_LANES]) {
+    struct descent d[WIDE_LANES];
+    uint32_t found = 0;
+    for (int i = 0; i < WIDE_LANES; i++)
+        d[i] = (struct descent){.u = u[i], .probability = 1};
+    for (uint32_t going = t->node_count ? wanted : 0; going;)
+        for (uint32_t left = going; left; left &= left - 1) {
+            const int i = __builtin_ctz(left);
+            const bool lit = descend(t, &at[i], &d[i]);
+            if (lit && !(d[i].child & LIGHT_TREE_LEAF)) {
+                if (t->node_count > FEW_NODES)
+                    prefetch_node(&t->nodes[d[i].child]);
+                continue;
+            }
+            going &= ~(1u << i);
+            item[i] = d[i].child & ~LIGHT_TREE_LEAF;
+            pmf[i] = (float)d[i].probability;
+            found |= (uint32_t)(lit && pmf[i] > 0) << i;
+        }
+    return found;
+}
+
+void light_tree_prefetch(const struct light_tree *t, const uint32_t *items, int count) {
+    uint32_t slot[WIDE_LANES];
+    if (t->node_count <= FEW_NODES)
+        return;
+    for (int i = 0; i < count; i++)
+        slot[i] = t->slots[items[i]];
+    // level by level, since the way up waits for memory too
+    for (int going = count; going > 0;) {
+        const int were = going;
+        going = 0;
+        for (int i = 0; i < were; i++) {
+            if (slot[i] == LIGHT_TREE_NONE)
+                continue;
+            prefetch_node(&t->nodes[slot[i] / WIDE_LANES]);
+            slot[going++] = t->parents[slot[i] / WIDE_LANES];
+        }
+    }
 }
 
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item) {

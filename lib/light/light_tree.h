@@ -46,8 +46,17 @@ size_t light_tree_bytes(const struct light_tree *t);
 // u in [0, 1) with as many bits as there are. false: no light reaches the place.
 bool light_tree_choose(const struct light_tree *t, const struct light_place *at, double u,
                        uint32_t *item, float *pmf);
+// The same, to the bit, for the lanes of `wanted`; returns those that found an item. They go down side
+// by side, so that while one is looked at, the nodes of the others are on their way from memory.
+uint32_t light_tree_choose_lanes(const struct light_tree *t, uint32_t wanted,
+                                 const struct light_place at[WIDE_LANES],
+                                 const double u[WIDE_LANES], uint32_t item[WIDE_LANES],
+                                 float pmf[WIDE_LANES]);
 // The probability that choose finds the item.
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item);
+// Sends for the memory that light_tree_pmf will need, without waiting for it.
+// At most sixteen items.
+void light_tree_prefetch(const struct light_tree *t, const uint32_t *items, int count);
 // Nodes that choose looks at to find the item.
 int light_tree_depth(const struct light_tree *t, uint32_t item);
 

@@ -204,8 +204,35 @@ static bool choose_part(const struct light_choice *c, const struct light_place *
     return true;
 }
 
-static uint32_t light_of_part(const struct light_choice *c, const struct world_light *all,
-                              uint32_t part) {
+// As choose_part, lane by lane.
+static uint32_t choose_parts(const struct light_choice *c, uint32_t wanted,
+                             const struct light_place at[WIDE_LANES], wide u1, const wide u2[2],
+                             struct light_parts *out) {
+    const double share = (double)c->table_share;
+    double u[WIDE_LANES] = {0};
+    uint32_t in_tree = 0, found = 0;
+    for (uint32_t left = wanted; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const struct vec2 one = {u2[0][i], u2[1][i]};
+        u[i] = more_bits(u1[i], one);
+        if (c->has_tree && u[i] >= share) {
+            u[i] = (u[i] - share) / (1 - share);
+            in_tree |= 1u << i;
+        } else {
+            found |= (uint32_t)choose_part(c, &at[i], u1[i], one, &out->part[i], &out->pmf[i]) << i;
+        }
+    }
+    in_tree = light_tree_choose_lanes(&c->tree, in_tree, at, u, out->part, out->pmf);
+    for (uint32_t left = in_tree; left; left &= left - 1)
+        out->pmf[__builtin_ctz(left)] *= 1 - c->table_share;
+    return found | in_tree;
+}
+
+// Of what choose_part gives.
+static uint32_t light_of(const struct light_choice *c, const struct world_light *all,
+                         uint32_t part) {
+    if (part & LIGHT_TREE_LEAF)
+        return part & ~LIGHT_TREE_LEAF;
     uint32_t low = c->block_light[part / BLOCK], high = c->block_light[part / BLOCK + 1];
     while (low < high) {
         const uint32_t middle = low + (high - low + 1) / 2;
@@ -217,8 +244,8 @@ static uint32_t light_of_part(const struct light_choice *c, const struct world_l
     return low;
 }
 
-static bool sample_chosen(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
-                          float pmf, struct light_sample *s) {
+bool light_chosen_sample(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
+                         float pmf, struct light_sample *s) {
     bool lit;
     if (l->type->aim)
         lit = l->type->aim(l->data, u2, s);
@@ -236,9 +263,17 @@ uint32_t light_choice_of_all(const struct light_choice *c, uint32_t count, float
     return count > 1 ? alias_sample(&c->table, u1, pmf, NULL) : 0;
 }
 
-bool light_chosen_sample(const struct world_light *l, vec3 p, struct vec2 u2, float pmf,
-                         struct light_sample *s) {
-    return sample_chosen(l, l->first_part, p, u2, pmf, s);
+uint32_t light_choice_parts(const struct light_choice *c, const struct world_light *all,
+                            uint32_t wanted, const struct light_place at[WIDE_LANES], wide u1,
+                            const wide u2[2], struct light_parts *out) {
+    const uint32_t found = choose_parts(c, wanted, at, u1, u2, out);
+    for (uint32_t left = found; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        const struct world_light *l = &all[out->light[i] = light_of(c, all, out->part[i])];
+        if (l->parts && l->type->part_prefetch)
+            l->type->part_prefetch(l->data, out->part[i] - l->first_part);
+    }
+    return found;
 }
 
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
@@ -252,11 +287,11 @@ bool light_choice_sample(const struct light_choice *c, const struct world_light 
     if (c->by_part) {
         if (!choose_part(c, at, u1, u2, &part, &pmf))
             return false;
-        *light = part & LIGHT_TREE_LEAF ? part & ~LIGHT_TREE_LEAF : light_of_part(c, all, part);
+        *light = light_of(c, all, part);
     } else {
         *light = light_choice_of_all(c, count, u1, &pmf);
     }
-    return sample_chosen(&all[*light], part, at->p, u2, pmf, s);
+    return light_chosen_sample(&all[*light], part, at->p, u2, pmf, s);
 }
 
 float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,
@@ -269,4 +304,18 @@ float light_choice_pdf_sa(const struct light_choice *c, const struct world_light
     const float pmf = c->has_tree ? (1 - c->table_share) * light_tree_pmf(&c->tree, at, part)
                                   : c->table.entries[part].pmf;
     return pmf * pdf;
+}
+
+void light_choice_prefetch(const struct light_choice *c, const struct world_light *all,
+                           const uint32_t *found, const uint32_t *triangles, int count) {
+    uint32_t parts[WIDE_LANES];
+    int n = 0;
+    if (!c->has_tree)
+        return;
+    for (int i = 0; i < count; i++) {
+        const struct world_light *l = &all[found[i]];
+        if (l->type->bounds)
+            parts[n++] = l->first_part + (l->parts ? triangles[i] : 0);
+    }
+    light_tree_prefetch(&c->tree, parts, n);
 }

@@ -54,10 +54,19 @@ const char *light_choice_name(const struct light_choice *c);
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
                          uint32_t count, const struct light_place *at, float u1, struct vec2 u2,
                          uint32_t *light, struct light_sample *s);
-// Its two steps where lights are not chosen by part: a light, and a point on it.
+// Its two steps where lights are not chosen by part: a light, and a point on it (first_part).
 uint32_t light_choice_of_all(const struct light_choice *c, uint32_t count, float u1, float *pmf);
-bool light_chosen_sample(const struct world_light *l, vec3 p, struct vec2 u2, float pmf,
-                         struct light_sample *s);
+bool light_chosen_sample(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
+                         float pmf, struct light_sample *s);
+// The first step for the lanes of `wanted`, where lights are chosen by part: those that found one,
+// with the bits of one at a time. The parts' memory is then on its way.
+struct light_parts {
+    uint32_t part[WIDE_LANES], light[WIDE_LANES];
+    float pmf[WIDE_LANES];
+};
+uint32_t light_choice_parts(const struct light_choice *c, const struct world_light *all,
+                            uint32_t wanted, const struct light_place at[WIDE_LANES], wide u1,
+                            const wide u2[2], struct light_parts *out);
 static inline spectrum light_late_emission(const struct world_light *light, vec3 wi) {
     return light->type->emission(light->data, &(struct light_hit){.wi = wi, .distance = INFINITY});
 }
@@ -65,3 +74,7 @@ static inline spectrum light_late_emission(const struct world_light *light, vec3
 // The density with which light_choice_sample finds the point of a light that a ray has found.
 float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,
                           const struct light_place *at, const struct light_hit *hit);
+// Sends for the memory that this will need, without waiting for it: at most sixteen lights, and the
+// triangle of each that was found.
+void light_choice_prefetch(const struct light_choice *c, const struct world_light *all,
+                           const uint32_t *found, const uint32_t *triangles, int count);

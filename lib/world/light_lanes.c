@@ -45,7 +45,8 @@ static uint32_t sample_alone(const struct world_light *l, uint32_t lanes, const 
     for (uint32_t left = lanes; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         struct light_sample s;
-        if (!light_chosen_sample(l, wide3_lane(p, i), (struct vec2){u[0][i], u[1][i]}, pmf[i], &s))
+        if (!light_chosen_sample(l, l->first_part, wide3_lane(p, i),
+                                 (struct vec2){u[0][i], u[1][i]}, pmf[i], &s))
             continue;
         set_sample(out, i, &s);
         lit |= 1u << i;
@@ -77,26 +78,38 @@ static uint32_t sample_chosen(const struct world *w, uint32_t wanted, const stru
     return lit;
 }
 
-uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struct wide3 *p,
+// Lights chosen by part, for which the lanes wait together.
+static uint32_t sample_parts(const struct world *w, uint32_t wanted, const struct wide3 *p,
                              const struct wide3 *side, wide u1, const wide u2[2],
                              struct light_lanes *out) {
+    struct light_place at[WIDE_LANES];
+    struct light_parts chosen;
     uint32_t lit = 0;
-    out->delta = out->late = 0;
-    if (w->light_count == 0)
-        return 0;
-    if (!w->choice.by_part)
-        return sample_chosen(w, wanted, p, u1, u2, out);
-    for (uint32_t left = wanted; left; left &= left - 1) {
+    for (int i = 0; i < WIDE_LANES; i++)
+        at[i] = (struct light_place){wide3_lane(p, i), wide3_lane(side, i)};
+    uint32_t left = light_choice_parts(&w->choice, w->lights, wanted, at, u1, u2, &chosen);
+    for (; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
-        const struct light_place at = {wide3_lane(p, i), wide3_lane(side, i)};
+        const struct vec2 u = {u2[0][i], u2[1][i]};
         struct light_sample l;
-        if (!world_sample_light(w, &at, u1[i], (struct vec2){u2[0][i], u2[1][i]}, &out->light[i],
-                                &l))
+        out->light[i] = chosen.light[i];
+        if (!light_chosen_sample(&w->lights[chosen.light[i]], chosen.part[i], at[i].p, u,
+                                 chosen.pmf[i], &l))
             continue;
         set_sample(out, i, &l);
         lit |= 1u << i;
     }
     return lit;
+}
+
+uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struct wide3 *p,
+                             const struct wide3 *side, wide u1, const wide u2[2],
+                             struct light_lanes *out) {
+    out->delta = out->late = 0;
+    if (w->light_count == 0)
+        return 0;
+    return w->choice.by_part ? sample_parts(w, wanted, p, side, u1, u2, out)
+                             : sample_chosen(w, wanted, p, u1, u2, out);
 }
 
 void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,

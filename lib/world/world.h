@@ -85,6 +85,13 @@ static inline bool world_sample_light(const struct world *w, const struct light_
     return light_choice_sample(&w->choice, w->lights, w->light_count, at, u1, u2, light, s);
 }
 
+// Sends for the memory that world_light_pdf_sa will need for so many lights (at most sixteen), without
+// waiting for it; triangles: where each was found.
+static inline void world_prefetch_lights(const struct world *w, const uint32_t *found,
+                                         const uint32_t *triangles, int count) {
+    light_choice_prefetch(&w->choice, w->lights, found, triangles, count);
+}
+
 // The density with which world_sample_light finds the point of a light that a ray found.
 static inline float world_light_pdf_sa(const struct world *w, uint32_t light,
                                        const struct light_place *at, const struct light_hit *hit) {

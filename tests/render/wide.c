@@ -43,6 +43,16 @@ static const char more_lights[] =
     "<shape type='sphere'><point name='center' x='0' y='1.2' z='-1'/>"
     "<float name='radius' value='0.1'/><emitter type='area'/></shape>";
 
+// Enough triangles for the light tree, beside a light without a place.
+static const char many_lights[] =
+    "<emitter type='constant'><rgb name='radiance' value='0.1,0.2,0.3'/></emitter>"
+    "<shape type='cube'><transform name='to_world'><scale value='0.2'/>"
+    "<translate x='-0.5' y='1' z='0.8'/></transform><emitter type='area'>"
+    "<rgb name='radiance' value='5,6,7'/></emitter></shape>"
+    "<shape type='cube'><transform name='to_world'><scale value='0.1'/>"
+    "<translate x='0.9' y='1.5' z='-0.5'/></transform><emitter type='area'>"
+    "<rgb name='radiance' value='9,7,2'/></emitter></shape>";
+
 static const char sky[] =
     "<emitter type='sunsky'><vector name='sun_direction' x='0.3' y='0.2' z='0.8'/>"
     "<float name='sun_aperture' value='20'/></emitter>";
@@ -152,6 +162,8 @@ int main(void) {
     }
     together_is_as_one_by_one("<boolean name='hide_emitters' value='true'/>"
                               "<boolean name='strict_normals' value='true'/>", "sobol", more_lights);
+    together_is_as_one_by_one("<string name='light_choice' value='tree'/>", "sobol", more_lights);
+    together_is_as_one_by_one("", "sobol", many_lights);
     together_is_as_one_by_one("<integer name='max_depth' value='3'/>"
                               "<integer name='rr_depth' value='1'/>", "independent", "");
     crops_give_the_same_bits();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light tree against brute force: what can light a place has a probability, the probabilities
-// of all lights sum to 1, choose draws from them (chi-square, false alarm 1e-3 in all), and nothing
-// depends on the unit of length or of intensity.
+// of all lights sum to 1, choose draws from them (chi-square, false alarm 1e-3 in all), sixteen
+// together have the bits of each alone, and nothing depends on the unit of length or of intensity.
 #include <string.h>
 
 #include "base/mem.h"
@@ -133,6 +133,27 @@ static void check_place(const struct light_tree *t, const struct light_place *at
     }
 }
 
+// Sixteen together have the bits of each alone.
+static void check_lanes(const struct light_tree *t, int count, float scale, struct rng *r) {
+    struct light_place at[WIDE_LANES];
+    double u[WIDE_LANES];
+    uint32_t items[WIDE_LANES];
+    float pmfs[WIDE_LANES];
+    const uint32_t wanted = rng_u32(r) & 0xffff;
+    for (int i = 0; i < WIDE_LANES; i++) {
+        at[i] = place(r, i, count, scale);
+        u[i] = (double)rng_float(r);
+    }
+    const uint32_t found = light_tree_choose_lanes(t, wanted, at, u, items, pmfs);
+    for (int i = 0; i < WIDE_LANES; i++) {
+        uint32_t item = 0;
+        float pmf = 0;
+        const bool lit = wanted >> i & 1 && light_tree_choose(t, &at[i], u[i], &item, &pmf);
+        CHECK(lit == (found >> i & 1));
+        CHECK(!lit || (item == items[i] && pmf == pmfs[i]));
+    }
+}
+
 static double choice_p_value(const struct light_tree *t, const struct light_place *at, int count,
                              struct rng *r) {
     static int observed[MOST];
@@ -173,6 +194,7 @@ static void check_clouds(void) {
             for (int k = 0; k < PLACES; k++) {
                 const struct light_place at = place(&r, k, counts[c], scales[s]);
                 check_place(&t, &at, counts[c], &r);
+                check_lanes(&t, counts[c], scales[s], &r);
                 if (k < 2)
                     least = fmin(least, choice_p_value(&t, &at, counts[c], &r));
             }
