@@ -85,9 +85,9 @@ static bool prepare_integrator(const struct job_options *o, struct scene *s, str
     const struct integrator_type *type = integrator_type_of(s->integrator);
     if (type->prepare && !type->prepare(s->integrator, &wants))
         return false;
-    world_choose_lights(w, wants.light_choice);
     if (!integrator_enter(s->integrator, w, &s->arena))
         return false;
+    world_choose_lights(w, wants.light_choice);
     film->moments = wants.moments;
     film->aovs |= wants.aovs;
     return true;

@@ -23,7 +23,7 @@ bool integrator_meters(const struct object *integrator) {
     return meters;
 }
 
-bool integrator_enter(struct object *integrator, const struct world *w, struct arena *arena) {
+bool integrator_enter(struct object *integrator, struct world *w, struct arena *arena) {
     const struct integrator_type *type = integrator_type_of(integrator);
     bool good = !type->enter || type->enter(integrator, w, arena);
     for (const struct param *p = integrator->type->params; p && p->name && good; p++)

@@ -55,9 +55,10 @@ struct integrator_type {
     // Checks the parameters. false after an error message. NULL: nothing to do.
     bool (*prepare)(struct object *self, struct integrator_wants *wants);
     void (*trace)(const void *data, struct trace_context *ctx, const struct path_start *starts);
-    // Looks at the world before anything is traced; what it makes lives in the arena. false after an
-    // error message. NULL: nothing to do. (integrator_enter reaches nested ones.)
-    bool (*enter)(struct object *self, const struct world *w, struct arena *arena);
+    // Looks at the world before lights are chosen and anything is traced, and may put lights of its own
+    // in the place of infinite ones; what it makes lives in the arena. false after an error message.
+    // NULL: nothing to do. (integrator_enter reaches nested ones.)
+    bool (*enter)(struct object *self, struct world *w, struct arena *arena);
     // What it has to keep for its picture, after enter. NULL: it is not what it keeps that counts.
     uint64_t (*bytes)(const void *data);
     uint32_t most_lanes; // of one call; 0: SINK_LANES
@@ -87,8 +88,8 @@ extern const struct object integrator_first_hits;
 // Whether an integrator, with what is nested in it, can begin paths at path_start.surface.
 bool integrator_meters(const struct object *integrator);
 
-// Lets an integrator and what is nested in it look at the world.
-bool integrator_enter(struct object *integrator, const struct world *w, struct arena *arena);
+// Lets an integrator and what is nested in it look at the world. Lights are to be chosen after it.
+bool integrator_enter(struct object *integrator, struct world *w, struct arena *arena);
 
 static inline const struct integrator_type *integrator_type_of(const struct object *o) {
     return (const struct integrator_type *)o->type;

@@ -3,12 +3,12 @@
 // what a relighting tensor of that basis shows, without the noise of one, to study how many terms
 // a picture needs.
 //
-// Another integrator's contributions that come from infinity get another emission; its random numbers
-// are those of the scene as it is, so that the environment must be black nowhere. Of several infinite
-// lights the first stands for all.
+// The first infinite light stands for all: it is sampled where what is kept of the environment is
+// bright (integrator/relit_light.h), and contributions that come from it get its emission, which a sink
+// in between puts there because it may be negative.
 #include "curve/largest.h"
 #include "integrator/integrator.h"
-#include "sink/lighting.h"
+#include "integrator/relit_light.h"
 
 enum lighting_basis { AS_IT_IS, PIXELS, HAAR, DAUB4, HARMONICS };
 
@@ -63,7 +63,7 @@ static struct source_basis source_of(const struct relit *r) {
     return b;
 }
 
-static bool enter(struct object *self, const struct world *w, struct arena *arena) {
+static bool enter(struct object *self, struct world *w, struct arena *arena) {
     struct relit *r = self->data;
     r->world = w;
     r->stand_in = w->infinite_count > 0 ? w->infinite[0] : UINT32_MAX;
@@ -78,6 +78,8 @@ static bool enter(struct object *self, const struct world *w, struct arena *aren
     else if (kept > 0 && kept < r->source.count)
         keep_largest(r->weights, r->source.count, kept);
     lighting_unfold(&r->source, r->weights);
+    world_replace_light(w, r->stand_in, &relit_light_type,
+                        relit_light_make(&r->source, r->weights, w->radius, arena));
     return true;
 }
 

@@ -36,7 +36,7 @@ static bool prepare(struct object *self, struct integrator_wants *wants) {
     return s->filename != NULL;
 }
 
-static bool enter(struct object *self, const struct world *w, struct arena *arena) {
+static bool enter(struct object *self, struct world *w, struct arena *arena) {
     struct stored *s = self->data;
     struct budget_report report;
     const struct budget_options o = {.relmse = (double)s->relmse, .no_halves = true};

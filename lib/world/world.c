@@ -193,6 +193,14 @@ void world_choose_lights(struct world *w, enum light_choice_mode mode) {
     light_choice_init(&w->choice, mode, w->lights, w->light_count);
 }
 
+void world_replace_light(struct world *w, uint32_t light, const struct light_type *type,
+                         const void *data) {
+    w->lights[light].type = type;
+    w->lights[light].data = data;
+    light_choice_finish(&w->choice);
+    light_choice_init(&w->choice, LIGHT_CHOICE_AUTO, w->lights, w->light_count);
+}
+
 void world_destroy(struct world *w) {
     if (!w)
         return;

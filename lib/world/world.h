@@ -77,6 +77,10 @@ void world_shade_wide(struct world *w, uint32_t shape, const struct object *bsdf
 // Chooses lights in another way than world_create did (LIGHT_CHOICE_AUTO).
 void world_choose_lights(struct world *w, enum light_choice_mode mode);
 
+// Puts another light in the place of one, and chooses lights anew (LIGHT_CHOICE_AUTO).
+void world_replace_light(struct world *w, uint32_t light, const struct light_type *type,
+                         const void *data);
+
 // A point on one light as seen from a place, for next event estimation; s->pdf_sa includes the
 // choice of the light. false: nothing was sampled. u1 is not used unless w->choice.draws.
 static inline bool world_sample_light(const struct world *w, const struct light_place *at,
