@@ -211,28 +211,50 @@ static void add_position(const struct job *job, const struct light_triangles *sk
                       weight, rgb);
 }
 
-void edit_picture_by_loop(const char *scene, const struct edit_options *options, int depth, bool exact,
-                          struct edit_picture *out) {
+static void open_job(const char *scene, const struct edit_options *options, struct job *job) {
     struct job_options o = options->job;
-    struct light_triangles triangles;
-    struct job job;
     o.scene = scene;
     o.reading.integrator = "direct";
-    if (!job_open(&job, &o))
+    if (!job_open(job, &o))
         exit(1);
-    struct sky sky = {world_environment, job.world, 0};
-    for (uint32_t i = 0; i < job.world->infinite_count; i++) {
-        const struct world_light *l = &job.world->lights[job.world->infinite[i]];
+}
+
+static void init_lights(struct light_triangles *t, const struct job *job, uint32_t most) {
+    struct sky sky = {world_environment, job->world, 0};
+    for (uint32_t i = 0; i < job->world->infinite_count; i++) {
+        const struct world_light *l = &job->world->lights[job->world->infinite[i]];
         sky.detail = l->type->detail ? (double)l->type->detail(l->data) : sky.detail;
     }
-    light_triangles_init(&triangles, &sky, options->lights, 2);
+    light_triangles_init(t, &sky, most, 2);
+}
+
+void edit_picture_lights(const char *scene, const struct edit_options *options,
+                         struct light_triangles *out) {
+    struct job job;
+    open_job(scene, options, &job);
+    init_lights(out, &job, options->lights);
+    job_close(&job);
+}
+
+void edit_picture_by_lights(const char *scene, const struct edit_options *options,
+                            const struct light_triangles *sky, int depth, bool exact,
+                            struct edit_picture *out) {
+    struct job job;
+    open_job(scene, options, &job);
     *out = edit_picture_make(job.scene->film.width, job.scene->film.height);
     for (int y = 0; y < out->height; y++)
         for (int x = 0; x < out->width; x++)
             for (uint32_t p = 0; p < job.render.tracer.spp; p++)
-                add_position(&job, &triangles, x, y, p, depth, exact, out->rgb + 3 * (y * out->width + x));
-    light_triangles_finish(&triangles);
+                add_position(&job, sky, x, y, p, depth, exact, out->rgb + 3 * (y * out->width + x));
     job_close(&job);
+}
+
+void edit_picture_by_loop(const char *scene, const struct edit_options *options, int depth, bool exact,
+                          struct edit_picture *out) {
+    struct light_triangles sky;
+    edit_picture_lights(scene, options, &sky);
+    edit_picture_by_lights(scene, options, &sky, depth, exact, out);
+    light_triangles_finish(&sky);
 }
 
 // ---- comparing ----------------------------------------------------------------------------------

@@ -26,6 +26,12 @@ bool edit_picture_replay(const char *path, bool fixed, struct edit_picture *out)
 // those of the centre. exact: the whole material is averaged over the points.
 void edit_picture_by_loop(const char *scene, const struct edit_options *options, int depth, bool exact,
                           struct edit_picture *out);
+// The same over other lights; and the triangles of the options.
+void edit_picture_by_lights(const char *scene, const struct edit_options *options,
+                            const struct light_triangles *sky, int depth, bool exact,
+                            struct edit_picture *out);
+void edit_picture_lights(const char *scene, const struct edit_options *options,
+                         struct light_triangles *out);
 
 // mean of (a - b)^2 / (b^2 + 1e-3 mean(b)^2)
 double edit_picture_relmse(const struct edit_picture *a, const struct edit_picture *b);

@@ -2,13 +2,16 @@
 #include "curve/overlap.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "curve/joint.h"
 
 static const double FLAT = 1e-9; // radians: gammas closer than this count as equal
 
 void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXES],
                   const struct basis *const basis[OVERLAP_AXES], uint32_t axes,
                   struct arena *arena) {
-    *o = (struct overlap){.axes = axes, .tolerance = 1e-3, .depth = 6, .splits = 1,
+    *o = (struct overlap){.axes = axes, .channels = OVERLAP_CHANNELS, .tolerance = 1e-3, .depth = 6, .splits = 1,
                           .to_local = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     for (uint32_t i = 0; i < axes; i++) {
         const struct basis *b = basis[i];
@@ -16,6 +19,12 @@ void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXE
         if (b->spacing == SPACING_UNIFORM)
             o->axis[i].per_step = basis_intervals(b) / b->knots[basis_intervals(b)];
         o->share[i] = arena_alloc(arena, b->count * sizeof *o->share[i]);
+        if (axes == OVERLAP_AXES)
+            o->margin[i] = arena_alloc(arena, b->count * sizeof *o->margin[i]);
+    }
+    if (axes == OVERLAP_AXES) {
+        o->joint = arena_alloc(arena, (size_t)basis[0]->count * basis[1]->count * sizeof *o->joint);
+        o->missing = arena_alloc(arena, (basis[0]->count + basis[1]->count) * sizeof *o->missing);
     }
 }
 
@@ -47,11 +56,6 @@ double overlap_gamma(const struct gamma *g, struct angles *a) {
 }
 
 // ---- a part over which gamma is linear ----------------------------------------------------------
-
-// The functions that a part has a share of: share[first .. end).
-struct range {
-    uint32_t first, end;
-};
 
 // Gammas in order.
 struct slope {
@@ -107,7 +111,7 @@ static bool ends(const struct overlap_axis *a) {
 }
 
 // Makes room up to `end`, in zeros.
-static void widen(struct range *r, double *share, uint32_t first, uint32_t end) {
+static void widen(struct overlap_range *r, double *share, uint32_t first, uint32_t end) {
     if (r->first == r->end)
         r->first = r->end = first;
     while (r->first > first)
@@ -117,7 +121,7 @@ static void widen(struct range *r, double *share, uint32_t first, uint32_t end) 
 }
 
 static void add_at(const struct overlap_axis *a, double gamma, double part, double *share,
-                   struct range *r) {
+                   struct overlap_range *r) {
     const struct basis *b = &a->basis;
     const double *k = b->knots, last = k[basis_intervals(b)];
     const uint32_t i = overlap_interval(a, gamma);
@@ -136,7 +140,7 @@ static void add_at(const struct overlap_axis *a, double gamma, double part, doub
 
 // What of the part has gamma >= 0.
 static void add_upper(const struct overlap_axis *a, const struct slope *s, double part,
-                      double *share, struct range *r) {
+                      double *share, struct overlap_range *r) {
     const struct basis *b = &a->basis;
     const uint32_t n = basis_intervals(b);
     const bool hat = b->kind == BASIS_HAT;
@@ -161,9 +165,9 @@ static void add_upper(const struct overlap_axis *a, const struct slope *s, doubl
 }
 
 // The shares of a part of the triangle with gammas g at its corners.
-static struct range deal(const struct overlap_axis *a, const double g[3], double part,
+static struct overlap_range deal(const struct overlap_axis *a, const double g[3], double part,
                          double *share) {
-    struct range r = {0, 0};
+    struct overlap_range r = {0, 0};
     const struct slope s = slope_of(g);
     if (s.g[2] - s.g[0] < FLAT) {
         add_at(a, fabs(s.g[1]), part, share, &r);
@@ -178,10 +182,19 @@ static struct range deal(const struct overlap_axis *a, const double g[3], double
     return r;
 }
 
+void overlap_touch(struct overlap *o, uint32_t axis, uint32_t first, uint32_t end) {
+    struct overlap_range *r = &o->touched[axis];
+    if (first == end)
+        return;
+    const bool none = r->first == r->end;
+    r->first = none || first < r->first ? first : r->first;
+    r->end = none || end > r->end ? end : r->end;
+}
+
 static void add_part(struct overlap *o, double g[OVERLAP_AXES][3], double part,
                      const double light[OVERLAP_CHANNELS]) {
-    static const struct range one = {0, 1};
-    struct range a = one, b = one;
+    static const struct overlap_range one = {0, 1};
+    struct overlap_range a = one, b = one;
     if (o->axes > 0)
         a = deal(&o->axis[0], g[0], part, o->share[0]);
     if (o->axes > 1)
@@ -191,10 +204,12 @@ static void add_part(struct overlap *o, double g[OVERLAP_AXES][3], double part,
         for (uint32_t k = b.first; k < b.end; k++) {
             const double share = (o->axes > 0 ? o->share[0][j] : part) *
                                  (o->axes > 1 ? o->share[1][k] : 1);
-            double *sum = o->sums + (j * columns + k) * OVERLAP_CHANNELS;
-            for (int c = 0; c < OVERLAP_CHANNELS; c++)
+            double *sum = o->sums + (j * columns + k) * (size_t)o->channels;
+            for (int c = 0; c < o->channels; c++)
                 sum[c] += light[c] * share;
         }
+    overlap_touch(o, 0, a.first, a.end);
+    overlap_touch(o, 1, b.first, b.end);
 }
 
 void overlap_add_point(struct overlap *o, const double gamma[OVERLAP_AXES],
@@ -360,7 +375,57 @@ static void add_triangle(struct overlap *o, const struct overlap_triangle *t,
     }
 }
 
+// ---- both curves ----------------------------------------------------------------------------------
+
+static const double all[OVERLAP_CHANNELS] = {1};
+
+void overlap_add_alone(struct overlap *o, uint32_t axis, const struct overlap_triangle *t,
+                       double gamma[OVERLAP_AXES][OVERLAP_NODES]) {
+    struct overlap one = *o;
+    double own[OVERLAP_AXES][OVERLAP_NODES];
+    one.axes = one.channels = 1;
+    one.axis[0] = o->axis[axis];
+    one.share[0] = o->share[axis];
+    one.sums = o->margin[axis];
+    one.touched[0] = o->touched[axis];
+    memcpy(own[0], gamma[axis], sizeof own[0]);
+    add_triangle(&one, t, own, 1, one.depth, all);
+    o->touched[axis] = one.touched[0];
+}
+
+// Sums that an axis which ends may have lost something of are not those of the other axis alone.
+void overlap_add_fitted(struct overlap *o, const struct overlap_triangle *t,
+                        double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]) {
+    struct overlap both = *o;
+    const double *const sum[OVERLAP_AXES] = {ends(&o->axis[1]) ? NULL : o->margin[0],
+                                             ends(&o->axis[0]) ? NULL : o->margin[1]};
+    const uint32_t columns = o->axis[1].basis.count;
+    both.channels = 1;
+    both.sums = o->joint;
+    add_triangle(&both, t, gamma, 1, o->depth, all);
+    const struct overlap_range *r = both.touched;
+    joint_fit(o->joint, columns, (uint32_t[]){r[0].first, r[1].first}, (uint32_t[]){r[0].end, r[1].end},
+              sum, o->missing);
+    for (uint32_t j = r[0].first; j < r[0].end; j++)
+        for (uint32_t k = r[1].first; k < r[1].end; k++) {
+            double *share = &o->joint[(size_t)j * columns + k];
+            for (int c = 0; c < OVERLAP_CHANNELS; c++)
+                o->sums[((size_t)j * columns + k) * OVERLAP_CHANNELS + (size_t)c] += light[c] * *share;
+            *share = 0;
+        }
+    for (uint32_t x = 0; x < OVERLAP_AXES; x++) {
+        memset(o->margin[x] + r[x].first, 0, (r[x].end - r[x].first) * sizeof *o->margin[x]);
+        o->touched[x] = (struct overlap_range){0, 0};
+    }
+}
+
 void overlap_add(struct overlap *o, const struct overlap_triangle *t,
                  double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]) {
-    add_triangle(o, t, gamma, 1, o->depth, light);
+    if (o->axes < OVERLAP_AXES) {
+        add_triangle(o, t, gamma, 1, o->depth, light);
+        return;
+    }
+    for (uint32_t x = 0; x < OVERLAP_AXES; x++)
+        overlap_add_alone(o, x, t, gamma);
+    overlap_add_fitted(o, t, gamma, light);
 }

@@ -12,7 +12,9 @@
 //
 // A box has F(upper edge) - F(lower edge), a hat the like with first moments. Where gamma bends the
 // triangle is split at the middles of its edges. With two curves a part has the product of its
-// shares; parts are split until they lie between two knots of either axis, or `splits` times.
+// shares; parts are split until they lie between two knots of either axis, or `splits` times. What comes
+// of that is brought to the sums that each curve alone would have (curve/joint.h), so that a matrix with
+// all ones for one curve is the vector of the other.
 //
 // Conventions: gammas that fold (those of slopes and powers) are signed here, so that they run on
 // smoothly where they are 0; a share counts for |gamma|. What lies beyond the last knot belongs to
@@ -42,6 +44,11 @@ static inline uint32_t overlap_interval(const struct overlap_axis *a, double gam
     return gamma < a->basis.knots[last + 1] ? basis_interval(&a->basis, gamma) : last;
 }
 
+// The functions of an axis that a triangle has a share of: first to end.
+struct overlap_range {
+    uint32_t first, end;
+};
+
 // What lights are added to.
 struct overlap {
     uint32_t axes; // 0 to 2
@@ -50,7 +57,11 @@ struct overlap {
     int depth;        // most splits; 6
     int splits;       // most further ones for the sake of two curves; 1
     double *share[OVERLAP_AXES]; // scratch, a number for each function
-    double *sums;     // [functions of axis 0][of axis 1][3]
+    double *sums;     // [functions of axis 0][of axis 1][channels]
+    int channels;     // 3
+    // With two curves, scratch that is zero between uses: shares of each axis alone, of both, and where.
+    double *margin[OVERLAP_AXES], *joint, *missing;
+    struct overlap_range touched[OVERLAP_AXES];
     double wo[3];
     double to_local[3][3]; // rows: the local axes in the space of triangles
 };
@@ -75,6 +86,15 @@ double overlap_gamma(const struct gamma *g, struct angles *a);
 // Adds light * Delta to the sums; gamma: overlap_gamma at the nodes, by axis.
 void overlap_add(struct overlap *o, const struct overlap_triangle *t, double gamma[OVERLAP_AXES][OVERLAP_NODES],
                  const double light[OVERLAP_CHANNELS]);
+
+// The two steps of that with two curves: shares of an axis alone in margin[axis], which others may
+// have put there; and all, brought to these.
+void overlap_add_alone(struct overlap *o, uint32_t axis, const struct overlap_triangle *t,
+                       double gamma[OVERLAP_AXES][OVERLAP_NODES]);
+void overlap_add_fitted(struct overlap *o, const struct overlap_triangle *t,
+                        double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]);
+// Makes room in the touched range of an axis.
+void overlap_touch(struct overlap *o, uint32_t axis, uint32_t first, uint32_t end);
 
 // The same of a point.
 void overlap_add_point(struct overlap *o, const double gamma[OVERLAP_AXES],

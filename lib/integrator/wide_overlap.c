@@ -158,6 +158,23 @@ static void add_one(double *sum, const double light[OVERLAP_CHANNELS], double sh
         sum[c] += light[c] * share;
 }
 
+// Both curves, where one of them bends too much: each alone as with one curve.
+static void add_fitted(struct overlap *o, const struct overlap_triangle *t,
+                       double gamma[OVERLAP_AXES][OVERLAP_NODES], wide part,
+                       const double light[OVERLAP_CHANNELS]) {
+    for (uint32_t x = 0; x < OVERLAP_AXES; x++) {
+        struct shares s;
+        if (!deal(&o->axis[x], gamma[x], part, &s)) {
+            overlap_add_alone(o, x, t, gamma);
+            continue;
+        }
+        for (uint32_t i = 0; i < s.count; i++)
+            o->margin[x][s.first + i] = (double)sum_of(s.share[i]);
+        overlap_touch(o, x, s.first, s.first + s.count);
+    }
+    overlap_add_fitted(o, t, gamma, light);
+}
+
 void wide_overlap_add(struct overlap *o, const struct overlap_triangle *t,
                       double gamma[OVERLAP_AXES][OVERLAP_NODES],
                       const double light[OVERLAP_CHANNELS]) {
@@ -171,7 +188,10 @@ void wide_overlap_add(struct overlap *o, const struct overlap_triangle *t,
     }
     if (!deal(&o->axis[0], gamma[0], part, &a) ||
         (o->axes > 1 && !deal(&o->axis[1], gamma[1], wide_of(1), &b))) {
-        overlap_add(o, t, gamma, light);
+        if (o->axes > 1)
+            add_fitted(o, t, gamma, part, light);
+        else
+            overlap_add(o, t, gamma, light);
         return;
     }
     for (uint32_t j = 0; j < a.count && o->axes == 1; j++)
