@@ -2,6 +2,7 @@
 // Rules of the file as a whole, of pictures, cameras, lights and nodes.
 #include "scene/gltf_check.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -174,6 +175,24 @@ static bool check_tree(struct gltf *g) {
     return ok;
 }
 
+// A matrix must be a translation, rotation and scale (glTF 2.0, 3.5.3), whose columns stand at right
+// angles; written in float or fewer digits, they do so nearly.
+static bool check_matrix(struct gltf *g, const char *at, const double m[16]) { // by columns
+    static const double MOST_COSINE = 1e-3;
+    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+        return gltf_fail(g, at, "has %g %g %g %g as its last row, expected 0 0 0 1", m[3], m[7],
+                         m[11], m[15]);
+    for (int i = 0; i < 3; i++) {
+        const double *a = m + 4 * i, *b = m + 4 * ((i + 1) % 3);
+        const double lengths = sqrt((a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) *
+                                    (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]));
+        if (fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) > MOST_COSINE * lengths)
+            return gltf_fail(g, at, "is sheared: columns %d and %d are not at right angles", i,
+                             (i + 1) % 3);
+    }
+    return true;
+}
+
 static bool check_node(struct gltf *g, size_t i) {
     const struct json *node = gltf_item(g, "nodes", i);
     const char *at = arena_printf(g->arena, "/nodes/%zu", i);
@@ -184,11 +203,9 @@ static bool check_node(struct gltf *g, size_t i) {
         return gltf_fail(g, arena_printf(g->arena, "%s/weights", at),
                          "has %zu weights for %zu morph targets", json_count(weights),
                          json_count(targets));
-    double m[16]; // by columns
-    if (gltf_numbers(node, "matrix", 16, m) && (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1))
-        return gltf_fail(g, arena_printf(g->arena, "%s/matrix", at),
-                         "has %g %g %g %g as its last row, expected 0 0 0 1", m[3], m[7], m[11], m[15]);
-    return true;
+    double m[16];
+    return !gltf_numbers(node, "matrix", 16, m) ||
+           check_matrix(g, arena_printf(g->arena, "%s/matrix", at), m);
 }
 
 static bool check_scenes(struct gltf *g) {

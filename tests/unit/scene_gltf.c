@@ -153,6 +153,9 @@ static void refuses_with_a_pointer(void) {
                       "[\"KHR_lights_punctual\"],\"extensions\":{\"KHR_lights_punctual\":{\"lights\":"
                       "[{\"type\":\"spot\",\"spot\":{\"innerConeAngle\":1}}]}},\"scenes\":[{}]}"));
     CHECK(captured_has("/lights/0/spot: has an inner cone of 1"));
+    CHECK(!read_model("{" TRIANGLE MESH "\"materials\":[{}],\"nodes\":[{\"mesh\":0,\"matrix\":"
+                      "[1,0,0,0,1,1,0,0,0,0,1,0,0,0,0,1]}],\"scenes\":[{\"nodes\":[0]}]}"));
+    CHECK(captured_has("/nodes/0/matrix: is sheared"));
     CHECK(!read_model("{\"asset\":{\"version\":\"1.0\"}}") && captured_has("/asset/version"));
 }
 
