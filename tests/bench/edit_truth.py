@@ -39,7 +39,7 @@ SCENES = {
     "bitterli-box": ("@scenes/bitterli/cornell-box/scene_mitsuba05.xml", ["128,8,1", "128,1,1,1"],
                      {"even": ["LeftWall", "RightWall", "Floor", "BackWall", "ShortBox", "TallBox"]}),
 }
-MARKS = {"128,8,1": 2e-3, "128,1,1,1": 1e-2, "128,1,1": 1e-2}
+MARKS = {"128,8,1": 2e-3, "128,1,1,1": 1e-2}
 
 
 def colour(r, most=0.9):
