@@ -14,9 +14,10 @@ import subprocess
 import sys
 import tempfile
 
-GLOSSY = ('<bsdf type="editable" id="%s"><string name="model" value="blinnphong"/>'
+GLOSSY = ('<bsdf type="twosided" id="%s"><bsdf type="editable">'
+          '<string name="model" value="blinnphong"/>'
           '<string name="basis" value="box"/><rgb name="specular_reflectance" value="0.3"/>'
-          '<rgb name="diffuse_reflectance" value="0.4"/></bsdf>')
+          '<rgb name="diffuse_reflectance" value="0.4"/></bsdf></bsdf>')
 
 
 def run(*command):
