@@ -36,7 +36,8 @@ static const char *takes(enum param_type type) {
 }
 
 static void print_param(const struct param *p) {
-    printf("  %-*s%s", COLUMN, p->name, takes(p->type));
+    const char *gap = strlen(p->name) < (size_t)COLUMN ? "" : " ";
+    printf("  %-*s%s%s", COLUMN, p->name, gap, takes(p->type));
     for (int i = 0; p->type == PARAM_CHOICE && p->choices[i]; i++)
         printf("%s%s", i ? ", " : " ", p->choices[i]);
     if (p->min != 0 || p->max != 0)

@@ -134,6 +134,8 @@ expect 0 "$relume" help bsdf roughconductor
 contains "$out" "one of beckmann, ggx [beckmann]"
 contains "$out" "number or texture from 0 to 1000 [0.1]"
 contains "$out" "visible normals are always sampled"
+expect 0 "$relume" help bsdf principled
+contains "$out" "main_specular_sampling_rate number"
 expect 0 "$relume" help sunsky
 contains "$out" "(degrees)"
 expect 0 "$relume" help emitter spot
