@@ -108,8 +108,8 @@ const struct subcommand subcommand_brdf = {
     .options = {.options = options,
                 .arguments = arguments,
                 .description =
-                    "Prints the albedo for several directions of the eye and over all of them, how "
-                    "far the\nmaterial is from reciprocal, and by how much it returns more light "
+                    "Prints the albedo (of energy) for several directions of the eye and over all "
+                    "of them, how\nfar the material is from reciprocal, and by how much it returns more light "
                     "than arrives.",
                 .examples = "  relume brdf gold.binary\n"
                             "  relume brdf roughconductor -D material=Au -D alpha=0.2 --json\n"

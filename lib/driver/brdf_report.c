@@ -17,6 +17,7 @@ static vec3 direction(double theta, double phi) {
     return v3((float)(sin(theta) * cos(phi)), (float)(sin(theta) * sin(phi)), (float)cos(theta));
 }
 
+// Albedos are of energy: refraction's scaling of radiance is divided out.
 static struct sums sample_from(const struct material *m, vec3 wo, int count, struct rng *rng) {
     struct closure_stack stack;
     struct sums s = {0};
@@ -26,11 +27,13 @@ static struct sums sample_from(const struct material *m, vec3 wo, int count, str
         const float u1 = rng_float(rng), u = rng_float(rng), v = rng_float(rng);
         if (!closure_sample(c, u1, (struct vec2){u, v}, &b))
             continue;
-        const double mean = (double)spectrum_mean(b.weight);
+        const bool reflected = b.wi[2] * wo[2] > 0;
+        const spectrum energy = b.weight * (reflected ? 1 : sqr(b.eta));
+        const double mean = (double)spectrum_mean(energy);
         for (int k = 0; k < SPECTRUM_LANES; k++)
-            s.mean[k] += (double)b.weight[k] / count;
+            s.mean[k] += (double)energy[k] / count;
         s.squares += mean * mean / count;
-        *(b.wi[2] * wo[2] > 0 ? &s.above : &s.below) += mean / count;
+        *(reflected ? &s.above : &s.below) += mean / count;
     }
     return s;
 }
