@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <math.h>
 #include <string.h>
 
 #include "base/file.h"
@@ -18,28 +19,52 @@ static vec3 turned(vec3 w, float phi) {
     return v3(w[0] * c - w[1] * s, w[0] * s + w[1] * c, w[2]);
 }
 
+struct mean_value {
+    int turns;                // azimuths that the mean is over
+    double difference, total; // of values and those with the directions exchanged
+};
+
+// Over azimuths, and both ways: the format knows isotropic, reciprocal materials only.
+static spectrum mean_value(const struct material *m, vec3 wo, vec3 wi, struct mean_value *over) {
+    spectrum there = spectrum_grey(0), back = spectrum_grey(0);
+    for (int k = 0; k < over->turns; k++) {
+        const float phi = TWO_PI * (float)k / (float)over->turns;
+        const vec3 o = turned(wo, phi), i = turned(wi, phi);
+        there += value(m, o, i);
+        back += value(m, i, o);
+    }
+    const double cosines = (double)(wo[2] * wi[2]);
+    const double a = cosines * (double)spectrum_mean(there);
+    const double b = cosines * (double)spectrum_mean(back);
+    over->difference += fabs(a - b);
+    over->total += 0.5 * (a + b);
+    return (there + back) * (0.5f / (float)over->turns);
+}
+
+static void warn_of_means(const char *path, const struct mean_value *over) {
+    if (over->turns > 1)
+        log_warn("%s: the material is anisotropic; the table holds its mean over azimuths", path);
+    if (over->difference > 0.01 * over->total)
+        log_warn("%s: the material is not reciprocal, by %.0f %% in the mean; the table holds the "
+                 "mean of both ways", path, 100 * over->difference / over->total);
+}
+
 // Nodes that no pair of directions above the surface meets become invalid, as in measured tables.
-// Anisotropic materials are averaged over eight azimuths: the format knows isotropic ones.
 static bool to_merl(const struct material *m, const char *path) {
-    const int turns = bsdf_lobes(m->object) & LOBE_ANISOTROPIC ? 8 : 1;
+    struct mean_value over = {.turns = bsdf_lobes(m->object) & LOBE_ANISOTROPIC ? 8 : 1};
     float(*rgb)[3] = mem_array(MERL_CELLS, sizeof *rgb);
     for (int i = 0; i < MERL_CELLS; i++) {
         vec3 wi, wo;
         merl_directions(i / (MERL_THETA_D * MERL_PHI_D), i / MERL_PHI_D % MERL_THETA_D,
                         i % MERL_PHI_D, &wi, &wo);
-        const bool visible = wi[2] > 1e-4f && wo[2] > 1e-4f;
-        spectrum sum = spectrum_grey(visible ? 0 : -1);
-        for (int k = 0; k < turns && visible; k++) {
-            const float phi = TWO_PI * (float)k / (float)turns;
-            sum += value(m, turned(wo, phi), turned(wi, phi)) * (1 / (float)turns);
-        }
+        const bool visible = merl_is_visible(wi, wo);
+        const spectrum f = visible ? mean_value(m, wo, wi, &over) : spectrum_grey(-1);
         for (int c = 0; c < 3; c++)
-            rgb[i][c] = sum[c];
+            rgb[i][c] = f[c];
     }
     const bool good = merl_write(path, rgb);
     mem_free(rgb);
-    if (turns > 1)
-        log_warn("%s: the material is anisotropic; the table holds its mean over azimuths", path);
+    warn_of_means(path, &over);
     return good;
 }
 

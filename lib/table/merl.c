@@ -84,11 +84,15 @@ static void fill(struct merl_table *t, uint16_t *filled_in, size_t *open, size_t
     }
 }
 
+bool merl_is_visible(vec3 wi, vec3 wo) {
+    return wi[2] > 1e-4f && wo[2] > 1e-4f;
+}
+
 static bool is_visible(size_t cell) {
     vec3 wi, wo;
     merl_directions((int)(cell / (MERL_PHI_D * MERL_THETA_D)),
                     (int)(cell / MERL_PHI_D % MERL_THETA_D), (int)(cell % MERL_PHI_D), &wi, &wo);
-    return wi[2] > 0 && wo[2] > 0;
+    return merl_is_visible(wi, wo);
 }
 
 void merl_repair(struct merl_table *t) {

@@ -41,6 +41,9 @@ static inline size_t merl_index(int theta_h, int theta_d, int phi_d) {
 // Directions at the node of a cell: half vector in the plane of x and z, wi turned by phi_d about it.
 void merl_directions(int theta_h, int theta_d, int phi_d, vec3 *wi, vec3 *wo);
 
+// Whether such a pair stands above the surface, so that its cell has to hold a value.
+bool merl_is_visible(vec3 wi, vec3 wo);
+
 // Linear between nodes (or the node at or below, as the authors' program has it). wi, wo above the
 // surface.
 spectrum merl_eval(const struct merl_table *t, bool nearest, vec3 wi, vec3 wo);

@@ -34,6 +34,35 @@ for file in paint.binary paint.transfer; do
     roughly "$out" 4 0.25
 done
 
+# Glass that absorbs nothing returns all energy, though less radiance.
+expect 0 "$relume" brdf dielectric --json
+near "$out" directional_albedo.0.albedo.0 1
+near "$out" directional_albedo.7.albedo.2 1
+expect 0 "$relume" brdf roughdielectric -D alpha=0.01 --json
+roughly "$out" 2 1
+
+# A table that was written here has no holes to warn of; what it cannot hold is said.
+expect 0 "$relume" brdf phong -D exponent=5 --to "$folder/phong.binary"
+[ -z "$err" ] || fail "a reciprocal material: $err"
+expect 0 "$relume" brdf "$folder/phong.binary"
+[ -z "$err" ] || fail "its table: $err"
+cat >"$folder/tilted.xml" <<'END'
+<scene version="3.0.0">
+    <bsdf type="normalmap" id="tilted">
+        <texture type="bitmap" name="normalmap">
+            <string name="filename" value="tilt.pfm"/>
+            <boolean name="raw" value="true"/>
+        </texture>
+        <bsdf type="diffuse"/>
+    </bsdf>
+    <shape type="sphere"><ref id="tilted"/></shape>
+    <sensor type="perspective"/>
+</scene>
+END
+make_pfm "$folder/tilt.pfm" 1 1 3f400000
+expect 0 "$relume" brdf "$folder/tilted.xml" --id tilted --to "$folder/tilted.binary"
+contains "$err" "not reciprocal"
+
 for kind in cut lobe curve; do
     expect 0 "$relume" brdf roughplastic --plot "$folder/$kind.svg" --kind $kind --angles 0,45
     contains "$(cat "$folder/$kind.svg")" "<polyline"
