@@ -174,7 +174,8 @@ for options in --checkpoint=1 --preview=0.1 --half; do
     [ $code = 1 ] || fail "exit code $code beyond the size of a file: $err"
     contains "$err" "x.exr"
     cmp -s "$scene" "$folder/x.exr" || fail "a limit of size cost a picture"
-    [ -z "$(ls "$folder" | grep 'x.exr.*tmp')" ] || fail "left behind: $(ls "$folder")"
+    left=$(find "$folder" -name 'x.exr*tmp*')
+    [ -z "$left" ] || fail "left behind: $left"
 done
 
 # Mistakes in a scene name file, line and the nearest name; --lenient takes unknown parameters.
