@@ -173,6 +173,7 @@ static void make_response(struct polynomial *p, const struct polynomial_options 
         symbolic_object_init(o, p->plan.objects[i].form, &p->arena);
         for (uint32_t t = 0; t < o->form->terms; t++)
             o->texture[t] = editable_texture(p->plan.objects[i].material, t);
+        symbolic_object_ready(o);
         o->second = p->groups.second[i];
         if (o->second)
             init_coarse(p, o);

@@ -255,8 +255,8 @@ static void find_hits(struct trace_context *ctx, const struct lane *lanes, const
 
 // Lanes by the kind of their material; 0: those that are shaded one by one.
 struct kinds {
-    uint32_t count[WORLD_MOST_WIDE_KINDS];
-    uint16_t lanes[WORLD_MOST_WIDE_KINDS][MOST_LANES];
+    uint32_t count[PATH_KINDS];
+    uint16_t lanes[PATH_KINDS][MOST_LANES];
 };
 
 static void add_lane(struct kinds *k, uint32_t kind, uint16_t lane) {
@@ -273,11 +273,11 @@ static void shade_kind(const struct path *p, struct trace_context *ctx, struct w
     while (count - done >= least) {
         const uint32_t left = count - done;
         const struct packet group = {list + done, left < SINK_LANES ? (int)left : SINK_LANES};
-        path_shade_wide(p, ctx, w->lanes, &group, hits);
+        path_shade_wide(p, ctx, w->lanes, &group, hits, kind);
         done += (uint32_t)group.count;
     }
     while (done < count)
-        add_lane(k, 0, list[done++]);
+        add_lane(k, KIND_ALONE, list[done++]);
 }
 
 // What comes of a vertex does not depend on other lanes, so those that shade alike go together.
@@ -296,8 +296,9 @@ static void shade_all(const struct path *p, struct trace_context *ctx, struct wa
     }
     for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
         shade_kind(p, ctx, w, hits, kind, &kinds);
-    for (uint32_t k = 0; k < kinds.count[0]; k++) {
-        const uint16_t i = kinds.lanes[0][k];
+    shade_kind(p, ctx, w, hits, KIND_OWN, &kinds);
+    for (uint32_t k = 0; k < kinds.count[KIND_ALONE]; k++) {
+        const uint16_t i = kinds.lanes[KIND_ALONE][k];
         shade(p, ctx, &w->lanes[i], &hits[i]);
     }
 }

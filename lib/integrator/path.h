@@ -51,19 +51,23 @@ static inline bool path_may_contribute(const struct path *p, uint32_t edges) {
     return p->max_depth < 0 || edges < (uint32_t)p->max_depth;
 }
 
-// The kind of material by which path_shade_wide can shade a hit; 0: it cannot.
+// Kinds of material by which path_shade_wide can shade: none, the world's, and the response's own.
+enum { KIND_ALONE = 0, KIND_OWN = WORLD_MOST_WIDE_KINDS, PATH_KINDS };
+
 static inline uint32_t path_wide_kind(const struct trace_context *ctx, const struct lane *l,
                                       const struct accel_hit *hit) {
     const struct response *r = ctx->response;
     const uint32_t kind = ctx->world->shapes[hit->shape].wide_kind;
     if (!kind || (!l->first_done && ctx->sink->wants_surface))
-        return 0;
+        return KIND_ALONE;
     if (r == &response_physical)
         return kind;
-    return r->is_wide && r->is_wide(r, ctx, l->sample, l->from.depth, hit->shape) ? kind : 0;
+    const enum response_way way =
+        r->way ? r->way(r, ctx, l->sample, l->from.depth, hit->shape) : RESPONSE_ALONE;
+    return way == RESPONSE_WORLD ? kind : way == RESPONSE_OWN ? KIND_OWN : KIND_ALONE;
 }
 
-// One vertex of a packet's lanes, whose materials are of one kind: the same as one by one, with the
+// One vertex of a packet's lanes, whose materials are of this kind: the same as one by one, with the
 // same bits. hits: by lane.
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                     const struct packet *packet, const struct accel_hit *hits);
+                     const struct packet *packet, const struct accel_hit *hits, uint32_t kind);

@@ -271,28 +271,32 @@ static uint32_t look(const struct path *p, const struct vertices *v, struct wide
     return goes_on;
 }
 
-// For a response that keeps account of the path.
+// For a response that keeps account of the path, and may have data of its own.
 static void note_vertices(struct trace_context *ctx, const struct vertices *v,
-                          const struct packet *packet) {
-    for (int i = 0; i < packet->count; i++)
-        ctx->response->note(ctx->response, ctx, v->lane[i]->sample, v->lane[i]->from.depth,
-                            v->hit[i]->shape);
+                          const struct packet *packet, struct wide_points *points) {
+    for (int i = 0; i < packet->count; i++) {
+        const void *data = ctx->response->note(ctx->response, ctx, v->lane[i]->sample,
+                                               v->lane[i]->from.depth, v->hit[i]->shape);
+        points->data[i] = data ? data : points->data[i];
+    }
+    for (int i = packet->count; i < WIDE_LANES; i++)
+        points->data[i] = points->data[0];
 }
 
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                     const struct packet *packet, const struct accel_hit *hits) {
+                     const struct packet *packet, const struct accel_hit *hits, uint32_t kind) {
     struct vertices v;
     struct shading at;
     struct wide_points points;
     uint32_t alive = 0;
     choose(&v, lanes, packet, hits);
-    v.kind = ctx->world->wide_kinds[ctx->world->shapes[v.hit[0]->shape].wide_kind];
+    v.kind = kind == KIND_OWN ? ctx->response->own : ctx->world->wide_kinds[kind];
     gather_lanes(&v);
     gather_materials(ctx->world, &v, &points);
     world_surfaces(ctx->world, v.hit, &at.s);
     add_emission(ctx, p, &v, &at.s);
     if (ctx->response->note)
-        note_vertices(ctx, &v, packet);
+        note_vertices(ctx, &v, packet, &points);
     const struct wide3 back = {-v.d.x, -v.d.y, -v.d.z};
     const uint32_t goes_on = look(p, &v, back, &at);
     if (goes_on) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/symbolic.h"
 
+#include "curve/arc.h"
+#include "integrator/wide_basis.h"
 #include "math/warp.h"
 
 // ---- a surface with a basis -----------------------------------------------------------------
@@ -51,8 +53,11 @@ static void add_term(const struct basis_closure *c, uint32_t t, struct angles *a
         }
 }
 
-// Leaves the marks of a direction in one of the lists and returns the density of drawing it.
-static float mark(const struct basis_closure *c, struct direction wi, enum chain_way way) {
+// Leaves the marks of a direction in one of the lists and returns the density of drawing it. Not
+// inlined: where it sees how wi was rounded, GCC 12 takes the vector that was there before.
+__attribute__((noinline)) static float mark(const struct basis_closure *c, vec3 local,
+                                            enum chain_way way) {
+    const struct direction wi = direction_from(local);
     struct marks *m = &c->to[way];
     struct angles a = angles_between(c->view.wo, wi);
     const float pdf = (float)fmin(bin_sampler_pdf_sa(c->sampler, &c->view, wi, &a), 1e30);
@@ -66,7 +71,7 @@ static spectrum basis_eval(const struct closure *closure, vec3 wi, float *pdf_sa
     const struct basis_closure *c = (const void *)closure;
     if (c->below)
         wi[2] = -wi[2];
-    *pdf_sa = cos_theta(wi) > 0 ? mark(c, direction_from(wi), CHAIN_LIGHT) : 0;
+    *pdf_sa = cos_theta(wi) > 0 ? mark(c, wi, CHAIN_LIGHT) : 0;
     return spectrum_grey(*pdf_sa);
 }
 
@@ -76,7 +81,7 @@ static bool basis_sample(const struct closure *closure, float u1, struct vec2 u2
     const struct direction wi = bin_sampler_sample(c->sampler, &c->view, (double)u1,
                                                    (double)u2.x, (double)u2.y);
     s->wi = direction_round(wi);
-    s->pdf_sa = cos_theta(s->wi) > 0 ? mark(c, direction_from(s->wi), CHAIN_PATH) : 0;
+    s->pdf_sa = cos_theta(s->wi) > 0 ? mark(c, s->wi, CHAIN_PATH) : 0;
     if (c->below)
         s->wi[2] = -s->wi[2];
     s->weight = spectrum_grey(1);
@@ -159,25 +164,35 @@ static void take_step(const struct symbolic *self, struct chain *chain, int obje
     }
 }
 
-static bool is_wide(const struct response *response, const struct trace_context *ctx, int lane,
-                    uint32_t depth, uint32_t shape) {
+static enum response_way way(const struct response *response, const struct trace_context *ctx,
+                             int lane, uint32_t depth, uint32_t shape) {
     const struct symbolic *self = (const void *)response;
     const int object = self->object_of_shape[shape];
-    if (self->survey)
-        return false;
-    return object == CHAIN_FIXED || (depth > 0 && depth < self->bounces &&
-                                     !self->objects[object].keeps &&
-                                     !is_second(self, &ctx->sink->chains[lane], object));
+    if (object == CHAIN_FIXED)
+        return self->survey ? RESPONSE_ALONE : RESPONSE_WORLD;
+    const struct symbolic_object *o = &self->objects[object];
+    if (self->survey || depth >= self->bounces)
+        return RESPONSE_ALONE;
+    if (depth == 0)
+        return o->wide ? RESPONSE_OWN : RESPONSE_ALONE;
+    return o->keeps || is_second(self, &ctx->sink->chains[lane], object) ? RESPONSE_ALONE
+                                                                         : RESPONSE_WORLD;
 }
 
-static void note(const struct response *response, const struct trace_context *ctx, int lane,
-                 uint32_t depth, uint32_t shape) {
+static const void *note(const struct response *response, const struct trace_context *ctx, int lane,
+                        uint32_t depth, uint32_t shape) {
     const struct symbolic *self = (const void *)response;
+    const int object = self->object_of_shape[shape];
     struct chain *chain = &ctx->sink->chains[lane];
-    (void)depth;
     chain->first_of_light = chain->later_of_light = CHAIN_PATH;
-    if (self->object_of_shape[shape] != CHAIN_FIXED)
-        take_step(self, chain, self->object_of_shape[shape]);
+    if (object != CHAIN_FIXED && depth > 0)
+        take_step(self, chain, object);
+    if (object == CHAIN_FIXED || depth > 0)
+        return NULL;
+    chain->object = object;
+    chain->basis = &self->objects[object];
+    chain->first_of_light = CHAIN_LIGHT;
+    return chain;
 }
 
 // A surface met after others.
@@ -212,7 +227,9 @@ static const struct closure *resolve(const struct response *response,
     chain->object = object;
     if (self->survey) {
         if (self->objects[object].knows_view)
-            chain->view = (float)atan2(hypot((double)wo[0], (double)wo[1]), fabs((double)wo[2]));
+            chain->view = (float)arc_quarter(sqrt((double)wo[0] * (double)wo[0] +
+                                                  (double)wo[1] * (double)wo[1]),
+                                             fabs((double)wo[2]));
         return NULL;
     }
     chain->first_of_light = CHAIN_LIGHT;
@@ -220,7 +237,11 @@ static const struct closure *resolve(const struct response *response,
 }
 
 void symbolic_init(struct symbolic *s) {
-    s->response = (struct response){resolve, is_wide, note};
+    s->response = (struct response){resolve, way, &wide_basis, note};
+}
+
+void symbolic_object_ready(struct symbolic_object *o) {
+    o->wide = wide_basis_fits(o);
 }
 
 void symbolic_object_init(struct symbolic_object *o, const struct form *form, struct arena *arena) {

@@ -21,6 +21,7 @@ struct symbolic_object {
     const struct texture_ref *texture[FORM_TERMS];
     uint32_t first[FORM_TERMS]; // place of a term's first coefficient
     bool knows_view;            // some term has a curve over theta_o
+    bool wide;                  // where it is seen first it can be shaded together (wide_basis.h)
     struct bin_sampler sampler;
     struct bin_sampler coarse; // where `second` is: of the bins that it tells apart
     const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
@@ -52,6 +53,8 @@ static inline uint32_t symbolic_places(const struct form *f, uint32_t term) {
 
 // Fills form, first, knows_view and sampler; memory from the arena. The form must outlive it.
 void symbolic_object_init(struct symbolic_object *o, const struct form *form, struct arena *arena);
+// Fills wide, when the textures are known.
+void symbolic_object_ready(struct symbolic_object *o);
 
 // Finds what is seen first, for the survey: `data` of the integrator is the struct symbolic, which
 // must be the response, too.

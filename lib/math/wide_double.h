@@ -50,3 +50,27 @@ static inline wide_double wide_double_sqrt(wide_double a) {
 static inline wide_double wide_double_copysign(wide_double magnitude, wide_double sign) {
     return (wide_double)(((wide_long)magnitude & INT64_MAX) | ((wide_long)sign & INT64_MIN));
 }
+
+static inline wide_double wide_double_of(double v) {
+    return (wide_double){v, v, v, v, v, v, v, v};
+}
+
+// As fmin and fmax, but that a NaN in a gives b.
+static inline wide_double wide_double_min(wide_double a, wide_double b) {
+    return wide_double_select(a < b, a, b);
+}
+
+static inline wide_double wide_double_max(wide_double a, wide_double b) {
+    return wide_double_select(a > b, a, b);
+}
+
+static inline wide_double wide_double_gather(const double *from, wide_long i) {
+    return (wide_double){from[i[0]], from[i[1]], from[i[2]], from[i[3]],
+                         from[i[4]], from[i[5]], from[i[6]], from[i[7]]};
+}
+
+// The lanes of a half whose bits are set.
+static inline wide_long wide_half_mask(uint32_t bits, int half) {
+    const wide_long lane = {1, 2, 4, 8, 16, 32, 64, 128};
+    return (((int64_t)(bits >> (8 * half)) & lane) != 0);
+}

@@ -31,6 +31,7 @@ struct marks {
 
 struct chain {
     int object;    // what is seen first; CHAIN_FIXED: nothing that can be edited
+    const void *basis; // the response's own: what the marks of `first` are made from
     float view;    // angle between its normal and the eye
     uint8_t first_of_light, later_of_light; // enum chain_way: the list that a light sample takes
     struct marks first[CHAIN_WAYS];
