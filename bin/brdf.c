@@ -81,7 +81,8 @@ static const struct option_spec options[] = {
     {.name = "to", .type = OPTION_TEXT, .offset = AT(to), .argument = "OUT",
      .help = "convert: OUT.binary is a MERL table, OUT.transfer one of transfer\n"
              "probabilities, every 5 degrees of incidence; OUT.csv are its curves in\n"
-             "the editable form, a file each, OUT.json all in one, for `edited`"},
+             "the editable form, a file each, OUT.json all in one, for `edited`\n"
+             "(measured ones become factors, for the model `halfdifference`)"},
     {.name = "plot", .type = OPTION_TEXT, .offset = AT(plot), .argument = "OUT.svg",
      .help = "draw the material, as SVG or PNG"},
     {.name = "kind", .type = OPTION_CHOICE, .offset = AT(kind), .argument = "KIND",

@@ -232,6 +232,10 @@ static bool refuse(const struct object *o) {
     return false;
 }
 
+bool editable_converts(const struct object *material) {
+    return material->type == &bsdf_editable.entry || find_rule(material->type->name);
+}
+
 bool editable_convert(struct object *material, struct arena *arena) {
     if (material->type == &bsdf_editable.entry)
         return true;

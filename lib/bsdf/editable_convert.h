@@ -8,3 +8,5 @@
 // place: whatever refers to it refers to the new one. Says what was taken for what; an editable one
 // stays as it is. false after an error message: nothing is near.
 bool editable_convert(struct object *material, struct arena *arena);
+// Whether one is.
+bool editable_converts(const struct object *material);

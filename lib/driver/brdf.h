@@ -10,13 +10,17 @@
 // of the other lobes over pairs of directions above the surface.
 void brdf_report(const struct material *m, struct json *out);
 
-// By the extension of the path: .binary (MERL), .transfer; of a material that was opened as editable
-// .json (its form, for the parameter `edited`) or .csv (a table a curve, OUT-TERM-SLOT.csv). Delta
+// By the extension of the path: .binary (MERL), .transfer; .json (its form, for
+// the parameter `edited`; of a material that is not editable, fitted factors) or .csv (a table a
+// curve, OUT-TERM-SLOT.csv). Delta
 // lobes have no value and are left out with a warning. false after an error message.
 bool brdf_convert(const struct material *m, const char *path);
 // Whether that path wants the material's curves.
 bool brdf_wants_curves(const char *path);
 bool brdf_write_curves(const struct material *m, const char *path); // brdf_convert's part
+// The values of a MERL table (table/merl.h), -1 where nothing is seen; free with mem_free. Says what
+// such a table cannot hold.
+float (*brdf_merl_values(const struct material *m, const char *path))[3];
 
 enum brdf_plot { BRDF_PLOT_CUT, BRDF_PLOT_LOBE, BRDF_PLOT_CURVE };
 extern const char *const brdf_plot_names[];

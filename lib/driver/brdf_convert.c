@@ -50,7 +50,7 @@ static void warn_of_means(const char *path, const struct mean_value *over) {
 }
 
 // Nodes that no pair of directions above the surface meets become invalid, as in measured tables.
-static bool to_merl(const struct material *m, const char *path) {
+float (*brdf_merl_values(const struct material *m, const char *path))[3] {
     struct mean_value over = {.turns = bsdf_lobes(m->object) & LOBE_ANISOTROPIC ? 8 : 1};
     float(*rgb)[3] = mem_array(MERL_CELLS, sizeof *rgb);
     for (int i = 0; i < MERL_CELLS; i++) {
@@ -62,9 +62,14 @@ static bool to_merl(const struct material *m, const char *path) {
         for (int c = 0; c < 3; c++)
             rgb[i][c] = f[c];
     }
-    const bool good = merl_write(path, rgb);
-    mem_free(rgb);
     warn_of_means(path, &over);
+    return rgb;
+}
+
+static bool to_merl(const struct material *m, const char *path) {
+    float(*rgb)[3] = brdf_merl_values(m, path);
+    const bool good = merl_write(path, (const float(*)[3])rgb);
+    mem_free(rgb);
     return good;
 }
 

@@ -8,6 +8,7 @@
 #include "bsdf/editable_data.h"
 #include "curve/form_json.h"
 #include "driver/brdf.h"
+#include "driver/brdf_factor.h"
 
 static bool form_write(const struct form *f, const char *path) {
     struct json *j = json_new_object();
@@ -35,9 +36,19 @@ static bool curves_write(const struct form *f, const char *path) {
     return true;
 }
 
-bool brdf_write_curves(const struct material *m, const char *path) {
+static bool write_form(const struct form *f, const char *path) {
     char extension[16];
     file_extension(path, extension, sizeof extension);
+    return strcmp(extension, "json") == 0 ? form_write(f, path) : curves_write(f, path);
+}
+
+bool brdf_write_curves(const struct material *m, const char *path) {
     const struct editable *e = m->object->data;
-    return strcmp(extension, "json") == 0 ? form_write(&e->form, path) : curves_write(&e->form, path);
+    if (m->object->type == &bsdf_editable.entry)
+        return write_form(&e->form, path);
+    struct arena arena = {0};
+    struct form f = {.terms = 0};
+    const bool good = brdf_factor(m, path, &f, &arena) && write_form(&f, path);
+    arena_finish(&arena);
+    return good;
 }

@@ -107,7 +107,8 @@ static bool choose(struct material *m, const struct material_request *request, c
             chosen = s->bsdfs[i];
     m->object = chosen;
     if (chosen)
-        return !request->editable || editable_convert(chosen, &m->scene->arena);
+        return !request->editable || !editable_converts(chosen) ||
+               editable_convert(chosen, &m->scene->arena);
     const char *ids = "";
     for (uint32_t i = 0; i < s->bsdf_count; i++)
         if (s->bsdfs[i]->id)

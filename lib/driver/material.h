@@ -11,7 +11,7 @@ struct material_request {
     const char *id;     // which material of the scene; NULL: its only one
     const struct scene_define *defines; // a scene's, or a model's parameters
     size_t define_count;
-    bool editable;      // bring it into the editable form, if it is not
+    bool editable;      // bring it into the editable form, if one is near
 };
 
 struct material {

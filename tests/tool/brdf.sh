@@ -82,6 +82,16 @@ roughly "$out" 0 "$gold"
 expect 0 "$relume" brdf phong -D exponent=40 --to "$folder/lobe.csv"
 head -3 "$folder/lobe-specular-f_A.csv" | grep -q '^from,to\|^at' || fail "no curve in lobe-specular-f_A.csv"
 expect 1 "$relume" brdf dielectric --to "$folder/glass.csv"
+contains "$err" "lets light through"
+
+# What no generator is near to becomes factors: those of a table, and from a table of these the same.
+expect 0 "$relume" brdf roughconductor -D material=Au -D alpha=0.3 --to "$folder/gold.binary"
+expect 0 "$relume" brdf "$folder/gold.binary" --to "$folder/factors.json"
+contains "$err" "factors of theta_h and theta_d; they miss 2."
+factored=(editable -D model=halfdifference -D edited="$folder/factors.json")
+expect 0 "$relume" brdf "${factored[@]}" --to "$folder/factors.binary"
+expect 0 "$relume" brdf "$folder/factors.binary" --to "$folder/again.json"
+contains "$err" "they miss 0.0 %"
 
 expect 1 "$relume" brdf roughconductor -D alpha=0.2 -D alpha_u=0.1 -D alpha_v=0.1
 contains "$err" "alpha was found beside alpha_u and alpha_v"
