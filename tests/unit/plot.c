@@ -65,6 +65,8 @@ static void param_parse_reads_what_the_table_allows(void) {
     const struct param flag = {"f", PARAM_BOOL, 0}, whole = {"i", PARAM_INT, 0, .min = -1, .max = 9};
     const struct param any = {"a", PARAM_INT, 0}, real = {"r", PARAM_FLOAT, 0, .min = 0, .max = 1};
     const struct param choice = {"c", PARAM_CHOICE, 0, .choices = choices}, text = {"t", PARAM_STRING, 0};
+    const struct param colour = {"k", PARAM_REFLECTANCE, 0};
+    const char *word;
     bool b;
     int i;
     float f;
@@ -73,7 +75,8 @@ static void param_parse_reads_what_the_table_allows(void) {
     CHECK(i == 2147483647);
     CHECK(param_parse(&real, "0.25", &f) && f == 0.25f);
     CHECK(param_parse(&choice, "high", &i) && i == 1);
-    CHECK(!param_takes_text(&text) && param_takes_text(&flag));
+    CHECK(param_parse(&text, "box.safetensors", &word) && strcmp(word, "box.safetensors") == 0);
+    CHECK(param_takes_text(&text) && param_takes_text(&flag) && !param_takes_text(&colour));
     static const char *const bad[] = {"", "x", "10", "1.5", "1 ", "nan", "99999999999999999999"};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         CHECK(!param_parse(&whole, bad[k], &i));
