@@ -145,6 +145,10 @@ bool material_open(struct material *m, const struct material_request *request) {
 }
 
 void material_close(struct material *m) {
+    const struct scene *s = m->scene;
+    for (uint32_t i = 0; s && i < s->texture_count; i++)
+        if (texture_type_of(s->textures[i])->finish)
+            texture_type_of(s->textures[i])->finish(s->textures[i]->data);
     scene_destroy(m->scene);
     arena_finish(&m->arena);
     *m = (struct material){0};
