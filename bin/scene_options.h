@@ -18,7 +18,7 @@
      .argument = "WxH", .min = 1, .max = 65536,                                                    \
      .help = "size of the picture in place of the scene's"}
 #define OPTION_CROP(owner, member)                                                                \
-    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = offsetof(owner, member),         \
+    {.name = "crop", .type = OPTION_RECTANGLE, .offset = offsetof(owner, member),                 \
      .argument = "X0,Y0,X1,Y1", .min = 0, .max = 65536,                                            \
      .help = "these pixels only; X1 and Y1 are just past the last"}
 // struct receiver: two rows

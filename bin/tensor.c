@@ -28,7 +28,7 @@ static const struct option_argument arguments[] = {
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output),
      .argument = "OUT.safetensors", .help = "the tensor to write"},
-    {.name = "crop", .type = OPTION_INTS, .values = 4, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
+    {.name = "crop", .type = OPTION_RECTANGLE, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
      .min = 0, .max = 65536, .help = "these pixels only; X1 and Y1 are just past the last"},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
      .help = "store 16 bits (bfloat16) a coefficient"},

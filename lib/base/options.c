@@ -92,13 +92,13 @@ static bool parse_choice(const struct option_spec *o, const char *text, void *va
     return false;
 }
 
-static bool parse_ints(const struct option_spec *o, const char *text, void *value) {
+static bool parse_ints(const struct option_spec *o, int count, const char *text, void *value) {
     const char *p = text;
-    for (int i = 0; i < o->values; i++) {
+    for (int i = 0; i < count; i++) {
         char *end;
         errno = 0;
         const long v = strtol(p, &end, 10);
-        const bool last = i == o->values - 1;
+        const bool last = i == count - 1;
         const bool separated = last ? *end == '\0' : *end == ',' || *end == 'x';
         if (end == p || !separated || errno || v < INT32_MIN || v > INT32_MAX ||
             !in_range(o, (double)v)) {
@@ -109,6 +109,17 @@ static bool parse_ints(const struct option_spec *o, const char *text, void *valu
         p = end + 1;
     }
     return true;
+}
+
+static bool parse_rectangle(const struct option_spec *o, const char *text, void *value) {
+    const int *c = value;
+    if (!parse_ints(o, 4, text, value))
+        return false;
+    if (c[0] < c[2] && c[1] < c[3])
+        return true;
+    log_error("--%s: found '%s', which holds no pixel; expected %s with X0 below X1, Y0 below Y1",
+              o->name, text, o->argument);
+    return false;
 }
 
 static void append(struct option_list *list, const char *text) {
@@ -126,7 +137,8 @@ static bool parse_value(const struct option_spec *o, const char *text, void *val
     case OPTION_SECONDS: return parse_seconds(o, text, value);
     case OPTION_TEXT: *(const char **)value = text; return true;
     case OPTION_CHOICE: return parse_choice(o, text, value);
-    case OPTION_INTS: return parse_ints(o, text, value);
+    case OPTION_INTS: return parse_ints(o, o->values, text, value);
+    case OPTION_RECTANGLE: return parse_rectangle(o, text, value);
     case OPTION_TEXTS: append(value, text); return true;
     case OPTION_HEADING: break;
     }

@@ -18,6 +18,7 @@ enum option_type {
     OPTION_TEXT,     // const char *; stays NULL when absent and without default
     OPTION_CHOICE,   // int: index into choices
     OPTION_INTS,     // int[values], separated by ',' or 'x': 640x480, 0,0,16,16
+    OPTION_RECTANGLE, // int[4]: X0,Y0,X1,Y1 as above, X0 < X1, Y0 < Y1
     OPTION_TEXTS,    // struct option_list: may be repeated, each adds one text
     OPTION_HEADING,  // no option: --help prints the name above those that follow
 };

@@ -10,7 +10,7 @@
 
 struct values {
     bool flag;
-    int number, size[2], choice;
+    int number, size[2], crop[4], choice;
     uint64_t seed;
     double real, seconds;
     const char *text, *first;
@@ -26,6 +26,8 @@ static const struct option_spec specs[] = {
     OPTION_GROUP("Sizes"), // in the midst of the others, and no option itself
     {.name = "size", .type = OPTION_INTS, .offset = AT(size), .argument = "WxH", .values = 2,
      .min = 1, .max = 65536, .help = "a size"},
+    {.name = "crop", .type = OPTION_RECTANGLE, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
+     .help = "a part"},
     {.name = "colour", .type = OPTION_CHOICE, .offset = AT(choice), .argument = "NAME",
      .choices = colours, .def = "green", .help = "a colour"},
     {.name = "seed", .type = OPTION_COUNT, .offset = AT(seed), .argument = "N", .help = "a seed"},
@@ -99,6 +101,9 @@ static void mistakes_are_named(void) {
         {"a --size 640", "WxH"},
         {"a --size 640x0", "WxH"},
         {"a --size 640x480x3", "WxH"},
+        {"a --crop 0,0,0,0", "holds no pixel"},
+        {"a --crop 0,5,4,5", "holds no pixel"},
+        {"a --crop 0,0,4", "X0,Y0,X1,Y1"},
         {"a --colour blue", "one of red, green"},
         {"a --seed -1", "without sign"},
         {"a --real nan", "a number"},
