@@ -218,3 +218,22 @@ struct object *object_shared(struct reader *r, const struct registry *registry,
         entry->object = o;
     return o;
 }
+
+const char *node_take_value(struct reader *r, struct xml_node *node, const char *name) {
+    const char *key = arena_printf(r->arena, "taken %s", name); // no attribute of a file has blanks
+    struct xml_node *previous = NULL;
+    for (struct xml_node *c = node->first; c; previous = c, c = c->next) {
+        const char *child_name = xml_get(c, "name");
+        if (tag_kind(c) != TAG_VALUE || !child_name || strcmp(child_name, name) != 0)
+            continue;
+        if (previous)
+            previous->next = c->next;
+        else
+            node->first = c->next;
+        if (node->last == c)
+            node->last = previous;
+        xml_set(node, key, xml_get(c, "value"), r->arena);
+        break;
+    }
+    return xml_get(node, key);
+}

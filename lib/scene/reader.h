@@ -150,14 +150,14 @@ struct object *object_shared(struct reader *r, const struct registry *registry,
 // Around the making of an object: refuses cycles and deep nesting.
 bool object_enter(struct reader *r, const struct xml_node *target, struct id_entry *entry);
 void object_leave(struct reader *r, struct id_entry *entry);
-void ignore_name(struct reader *r, const char *name, struct where at);
-void ignored_report(const struct reader *r);
-
-// ---- media.c, shapes.c, meshes.c, view.c -------------------------------------------------------------
-
 // Takes a value element out of an object (the reader itself uses it) and returns its value, also
 // when asked again. NULL: there is none.
 const char *node_take_value(struct reader *r, struct xml_node *node, const char *name);
+void ignore_name(struct reader *r, const char *name, struct where at);
+void ignored_report(const struct reader *r);
+
+// ---- media.c, shapes.c, lights.c, meshes.c, view.c ---------------------------------------------------
+
 // A <medium> that stands in a shape, a sensor or the scene; its index. SCENE_NONE after an error
 // message.
 uint32_t medium_read(struct reader *r, struct xml_node *target, struct id_entry *entry);
