@@ -68,7 +68,8 @@ bool form_append(struct form *f, const struct form *other) {
         struct form_term *term = &f->term[f->terms + t];
         *term = other->term[t];
         for (int s = 0; s < SLOTS; s++)
-            term->slots[s].curve += f->curves;
+            if (term->slots[s].gamma.kind != GAMMA_NONE)
+                term->slots[s].curve += f->curves;
     }
     memcpy(f->curve + f->curves, other->curve, sizeof *f->curve * other->curves);
     f->terms += other->terms;
@@ -118,7 +119,9 @@ bool form_same_shape(const struct form *a, const struct form *b) {
             return false;
         for (int s = 0; s < SLOTS; s++) {
             const struct form_slot *x = &a->term[t].slots[s], *y = &b->term[t].slots[s];
-            if (x->gamma.kind != y->gamma.kind || x->gamma.n != y->gamma.n || x->curve != y->curve)
+            const bool none = x->gamma.kind == GAMMA_NONE; // and so no curve
+            if (x->gamma.kind != y->gamma.kind ||
+                (!none && (x->gamma.n != y->gamma.n || x->curve != y->curve)))
                 return false;
         }
     }

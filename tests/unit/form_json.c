@@ -80,6 +80,15 @@ static void tabulate_some(struct form *f, struct rng *r, struct arena *arena) {
     }
 }
 
+// A sum of the model and, now and then, of another one.
+static bool make_sum(const struct model *m, bool two, const struct model_parameters *p,
+                     struct arena *arena, struct form *f) {
+    struct form more;
+    return model_make(m, p, arena, f, "test") &&
+           (!two || (model_make(model_find("lightview"), p, arena, &more, "test") &&
+                     form_append(f, &more)));
+}
+
 static void forms_come_back(void) {
     struct rng rng = {1};
     for (const struct model *const *m = models; *m; m++)
@@ -88,7 +97,7 @@ static void forms_come_back(void) {
             struct form form, back;
             const struct model_parameters p = random_parameters(&rng);
             struct json *terms[FORM_TERMS], *j = json_new_object();
-            CHECK(model_make(*m, &p, &arena, &form, "test"));
+            CHECK(make_sum(*m, i % 2 == 1, &p, &arena, &form));
             tabulate_some(&form, &rng, &arena);
             form_to_json(&form, j, terms);
             json_add_number(terms[form.terms - 1], "more", 1); // does no harm
