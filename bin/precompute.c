@@ -49,7 +49,8 @@ static const struct option_spec options[] = {
      "is left out (none), or comes from the ratio of the last two bounces (geometric)"},
     {.name = "later", .type = OPTION_TEXT, .offset = AT(later), .argument = "NAME",
      .def = "kept", .help = "at later hops edits change how much a surface reflects, not where to, which\n"
-     "is as it was (kept), or Lambertian (lambertian)"},
+     "is as it was (kept), or each of its terms' for itself, which takes more memory and\n"
+     "follows edits from diffuse to sharp (terms), or Lambertian (lambertian)"},
     {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
      .help = "" BUDGET_HELP "; drops what\n--time and --noise would keep to go on"},
     OPTION_GROUP("precompute edit --direct"),

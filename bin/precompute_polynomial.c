@@ -52,7 +52,7 @@ static bool parse_later(const char *text, enum polynomial_later *later) {
             *later = (enum polynomial_later)i;
             return true;
         }
-    log_error("--later %s: expected lambertian or kept", text);
+    log_error("--later %s: expected lambertian, kept or terms", text);
     return false;
 }
 

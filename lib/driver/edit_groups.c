@@ -9,11 +9,11 @@
 #include "base/log.h"
 #include "integrator/symbolic.h"
 
-uint64_t edit_groups_count(uint32_t classes, uint32_t bounces, uint64_t coarse) {
+uint64_t edit_groups_count(uint32_t steps, uint32_t bounces, uint64_t coarse) {
     const uint32_t most = coarse ? (bounces > 1 ? bounces - 2 : 0) : bounces - 1;
-    double tails = 1; // C(most + classes, classes)
+    double tails = 1; // C(most + steps, steps)
     for (uint32_t i = 1; i <= most; i++)
-        tails = tails * (classes + i) / i;
+        tails = tails * (steps + i) / i;
     const double all = coarse && bounces > 1 ? 1 + (double)coarse * tails : tails;
     return all < 0x1p62 ? (uint64_t)(all + 0.5) : UINT64_MAX;
 }
@@ -65,6 +65,27 @@ static uint32_t add_factor(struct edit_groups *g, struct edit_factor f) {
     return g->factor_count++;
 }
 
+// Of a class its albedo; of an object that is split its terms'.
+static void add_steps(struct edit_groups *g, const struct edit_plan *p,
+                      const struct edit_classes *classes, const bool *split) {
+    const uint32_t count = classes ? classes->count : p->count;
+    for (uint32_t c = 0; c < count; c++) {
+        const uint32_t first = g->factor_count;
+        bool whole = true;
+        for (uint32_t i = 0; i < p->count; i++) {
+            if ((classes ? classes->of[i] : i) != c)
+                continue;
+            g->step[i] = first;
+            whole = !split || !split[i] || (classes && classes->names[c]);
+            for (uint32_t t = 0; !whole && t < p->objects[i].form->terms; t++)
+                add_factor(g, (struct edit_factor){i, t, 0});
+        }
+        if (whole)
+            add_factor(g, (struct edit_factor){c, EDIT_ALBEDO, 0});
+    }
+    g->steps = g->factor_count;
+}
+
 static uint64_t coarse_count(const struct edit_plan *p, uint32_t most) {
     uint64_t n = 0;
     for (uint32_t i = 0; i < p->count; i++)
@@ -84,7 +105,7 @@ static uint32_t add_group(struct edit_groups *g, uint32_t parent, uint32_t last)
 // The steps from groups [first, end) that lead to a new one, and then those that do not. Albedos
 // alone count as factors that are in order; `root` groups have none.
 static void extend(struct edit_groups *g, uint32_t first, uint32_t end) {
-    const uint32_t m = g->classes;
+    const uint32_t m = g->steps;
     for (uint32_t i = first; i < end; i++)
         for (uint32_t o = g->last[i] < m ? g->last[i] : 0; o < m; o++)
             g->next[(size_t)i * m + o] = add_group(g, i, o);
@@ -123,33 +144,35 @@ static bool check_series(const uint32_t *series, uint32_t bounces) {
     return true;
 }
 
-static bool check_count(uint64_t count, uint32_t classes, uint32_t bounces) {
+static bool check_count(uint64_t count, uint32_t steps, uint32_t bounces) {
     if (count <= EDIT_MOST_GROUPS)
         return true;
     log_error("%u albedos and %u bounces make %.3g products of factors, more than %d; expected fewer "
-              "bounces, --group, or fewer bins at the second hop", classes, bounces,
+              "bounces, --group, or fewer bins at the second hop", steps, bounces,
               (double)count, EDIT_MOST_GROUPS);
     return false;
 }
 
 bool edit_groups_init(struct edit_groups *g, const struct edit_plan *plan,
-                      const struct edit_classes *classes, const uint32_t *series, uint32_t bounces) {
+                      const struct edit_classes *classes, const bool *split, const uint32_t *series,
+                      uint32_t bounces) {
     *g = (struct edit_groups){.objects = plan->count, .bounces = bounces,
-                              .classes = classes ? classes->count : plan->count,
                               .coarse = bounces > 1 ? series[1] : 1};
     const uint64_t coarse = g->coarse > 1 ? coarse_count(plan, g->coarse) : 0;
-    const uint64_t count = edit_groups_count(g->classes, bounces, coarse);
-    if (!check_series(series, bounces) || !check_count(count, g->classes, bounces))
+    g->step = mem_array(plan->count, sizeof *g->step);
+    g->factors = mem_array((size_t)plan->count * FORM_TERMS + coarse, sizeof *g->factors);
+    add_steps(g, plan, classes, split);
+    const uint64_t count = edit_groups_count(g->steps, bounces, coarse);
+    if (!check_series(series, bounces) || !check_count(count, g->steps, bounces)) {
+        edit_groups_finish(g);
         return false;
-    const size_t steps = (size_t)count * g->classes;
+    }
+    const size_t steps = (size_t)count * g->steps;
     g->second = mem_array(plan->count, sizeof *g->second);
-    g->factors = mem_array(g->classes + coarse, sizeof *g->factors);
     g->parent = mem_array(count, sizeof *g->parent);
     g->last = mem_array(count, sizeof *g->last);
     g->next = mem_array(steps, sizeof *g->next);
     memset(g->next, 0xff, steps * sizeof *g->next);
-    for (uint32_t i = 0; i < g->classes; i++)
-        add_factor(g, (struct edit_factor){i, EDIT_ALBEDO, 0});
     add_group(g, 0, UINT32_MAX);
     uint32_t first = 0;
     if (coarse) {
@@ -168,6 +191,7 @@ void edit_groups_finish(struct edit_groups *g) {
     for (uint32_t i = 0; g->second && i < g->objects; i++)
         mem_free(g->second[i]);
     mem_free(g->second);
+    mem_free(g->step);
     mem_free(g->factors);
     mem_free(g->parent);
     mem_free(g->last);
@@ -197,9 +221,10 @@ static double border(const struct basis *b, uint32_t j) {
     return j < b->count ? 0.5 * (b->knots[j - 1] + b->knots[j]) : b->knots[j - 1];
 }
 
-uint32_t edit_groups_coarse(const struct edit_groups *g, const struct form *f, uint32_t term,
-                            enum form_slot_name *slot, double *knots) {
-    const uint32_t bins = coarse_bins(f, term, g->coarse);
+// knots of a term's curve over at most that many bins.
+static uint32_t find_knots(const struct form *f, uint32_t term, uint32_t most,
+                           enum form_slot_name *slot, double *knots) {
+    const uint32_t bins = coarse_bins(f, term, most);
     *slot = coarse_slot(f, term);
     const uint32_t fine = symbolic_bins(f, term, *slot);
     for (uint32_t k = 0; k <= bins; k++)
@@ -207,6 +232,11 @@ uint32_t edit_groups_coarse(const struct edit_groups *g, const struct form *f, u
                                      coarse_first(f, term, bins, k))
                             : CURVE_END * k;
     return bins;
+}
+
+uint32_t edit_groups_coarse(const struct edit_groups *g, const struct form *f, uint32_t term,
+                            enum form_slot_name *slot, double *knots) {
+    return find_knots(f, term, g->coarse, slot, knots);
 }
 
 void edit_groups_describe(const struct edit_groups *g, const struct edit_plan *plan,
@@ -225,7 +255,7 @@ void edit_groups_describe(const struct edit_groups *g, const struct edit_plan *p
         json_add_count(j, "term", f->term);
         json_add_count(j, "bin", f->bin);
         enum form_slot_name slot;
-        const uint32_t bins = edit_groups_coarse(g, form, f->term, &slot, knots);
+        const uint32_t bins = find_knots(form, f->term, i < g->steps ? 1 : g->coarse, &slot, knots);
         struct json *list = json_add_array(j, "knots");
         for (uint32_t k = 0; k <= bins; k++)
             json_append_number(list, knots[k]);

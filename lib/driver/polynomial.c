@@ -7,11 +7,12 @@
 #include "base/thread.h"
 #include "bsdf/diffuse.h"
 #include "bsdf/editable_data.h"
+#include "curve/form_albedo.h"
 #include "driver/polynomial_describe.h"
 #include "driver/polynomial_pilot.h"
 
 const char *const polynomial_tails[] = {"none", "frozen", "geometric", NULL};
-const char *const polynomial_laters[] = {"lambertian", "kept", NULL};
+const char *const polynomial_laters[] = {"lambertian", "kept", "terms", NULL};
 
 // ---- the scene --------------------------------------------------------------------------------
 
@@ -130,14 +131,37 @@ static bool has_shape(const struct edit_object *o, const double albedo[CURVE_CHA
     return !is_lambertian(o) && albedo[0] > 1e-3 && albedo[1] > 1e-3 && albedo[2] > 1e-3;
 }
 
+// The terms of an object at later hops, over the values that their factors have as it is.
+static void split_later(struct polynomial *p, uint32_t object) {
+    struct symbolic_object *o = &p->objects[object];
+    for (uint32_t t = 0; t < o->form->terms; t++) {
+        const double *e = p->albedos[object][t];
+        double value[CURVE_CHANNELS];
+        form_term_albedo(o->form, t, e, value);
+        for (uint32_t k = 0; k < CURVE_CHANNELS; k++) {
+            double all = 0;
+            for (uint32_t j = 0; j < symbolic_places(o->form, t); j++)
+                all += e[j * CURVE_CHANNELS + k];
+            value[k] = value[k] > 1e-3 ? o->form->term[t].scale[k] * all / value[k] : 0;
+        }
+        const bool keeps = value[0] > 0 && value[1] > 0 && value[2] > 0;
+        o->lacks = o->lacks || !keeps;
+        o->part[t] = keeps ? spectrum_rgb((float)value[0], (float)value[1], (float)value[2])
+                           : spectrum_grey(0);
+    }
+}
+
 // What an object answers at later hops.
 static void choose_later(struct polynomial *p, uint32_t object, enum polynomial_later later) {
     struct symbolic_object *o = &p->objects[object];
     const double *b = p->classes.base[object];
     double albedo[CURVE_CHANNELS];
-    o->factor = p->classes.of[object];
+    o->factor = p->groups.step[object];
+    o->splits = p->groups.factors[o->factor].term != EDIT_ALBEDO;
     o->scale = spectrum_rgb((float)b[0], (float)b[1], (float)b[2]);
-    if (later != LATER_KEPT)
+    if (o->splits)
+        split_later(p, object);
+    if (o->splits || later == LATER_LAMBERTIAN)
         return;
     edit_plan_albedo(&p->plan, object, p->albedos[object], albedo);
     o->keeps = has_shape(&p->plan.objects[object], albedo);
@@ -181,7 +205,7 @@ static void make_response(struct polynomial *p, const struct polynomial_options 
     }
     symbolic_init(&p->response);
     p->response.objects = p->objects;
-    p->response.factors = p->classes.count;
+    p->response.factors = p->groups.steps;
     p->response.bounces = options->bounces;
     p->response.next = p->groups.next;
     p->survey = p->response;
@@ -223,6 +247,31 @@ static bool scene_fits(const struct scene *s) {
     return false;
 }
 
+// Objects whose terms differ, by object, where that is asked for; NULL: none.
+static const bool *find_split(struct polynomial *p, enum polynomial_later later) {
+    bool *split = arena_alloc(&p->arena, p->plan.count * sizeof *split);
+    for (uint32_t i = 0; i < p->plan.count; i++)
+        split[i] = p->plan.objects[i].form->terms > 1 && !is_lambertian(&p->plan.objects[i]);
+    return later == LATER_TERMS ? split : NULL;
+}
+
+// A path's marks multiply at hops whose terms have factors. Two of a term's coarse coefficients can be
+// met at once, that of a hat and its neighbour's.
+static bool marks_fit(const struct polynomial *p, const struct polynomial_options *o) {
+    uint64_t terms = 1, marks = 1;
+    for (uint32_t i = 0; i < p->plan.count; i++)
+        if (p->groups.factors[p->groups.step[i]].term != EDIT_ALBEDO &&
+            p->plan.objects[i].form->terms > terms)
+            terms = p->plan.objects[i].form->terms;
+    for (uint32_t hop = 1; hop < o->bounces && marks <= CHAIN_MARKS; hop++)
+        marks *= hop == 1 && o->series[1] > 1 ? 2 * terms : terms;
+    if (terms == 1 || marks <= CHAIN_MARKS)
+        return true;
+    log_error("--later terms: %u terms of a material and %u bounces make more than %d products on a "
+              "path; expected fewer bounces, or --later kept", (uint32_t)terms, o->bounces, CHAIN_MARKS);
+    return false;
+}
+
 bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
     struct edit_request request = {.options = o, .done = true};
     struct job_options job = o->job;
@@ -239,7 +288,8 @@ bool polynomial_open(struct polynomial *p, const struct polynomial_options *o) {
     if (done)
         polynomial_albedos(p, o->job.threads > 0 ? o->job.threads : thread_default_count());
     if (done && all_are_found(p) && make_classes(p, o) &&
-        edit_groups_init(&p->groups, &p->plan, &p->classes, o->series, o->bounces)) {
+        edit_groups_init(&p->groups, &p->plan, &p->classes, find_split(p, o->later), o->series,
+                         o->bounces) && marks_fit(p, o)) {
         make_response(p, o);
         return true;
     }

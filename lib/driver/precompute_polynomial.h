@@ -25,9 +25,10 @@ extern const char *const polynomial_tails[]; // "none", "frozen", "geometric", N
 enum polynomial_later {
     LATER_LAMBERTIAN, // surfaces are Lambertian ones of the same albedo
     LATER_KEPT,       // they keep the shape of their reflection and change its amount
+    LATER_TERMS,      // each of their terms does, for itself
 };
 
-extern const char *const polynomial_laters[]; // "lambertian", "kept", NULL
+extern const char *const polynomial_laters[]; // "lambertian", "kept", "terms", NULL
 
 struct polynomial_options {
     struct job_options job;     // scene, samples, size, ...; edit_scene is taken

@@ -5,8 +5,9 @@
 // that are not zero, quotient times cosine (and texture), and where among the object's coefficients
 // that belongs. Every later editable surface is Lambertian with an albedo that is left open, so its
 // answer is the cosine over pi and a step from one group to the next; or it keeps its material, over
-// the albedo, so that edits change how much it reflects and not where to; or, where the second hop
-// has curves of its own, the first of them answers with a basis again. After `bounces` scattering events
+// the albedo, so that edits change how much it reflects and not where to; or each of its terms does so
+// for itself; or, where the second hop has curves of its own, the first of them answers with a basis
+// again. After `bounces` scattering events
 // all surfaces answer with their materials as they are, and so do those that are never edited.
 //
 // The weight that an integrator sees is the density it draws with: its paths, and its roulette,
@@ -26,7 +27,10 @@ struct symbolic_object {
     struct bin_sampler coarse; // where `second` is: of the bins that it tells apart
     const uint32_t *second; // by place: the group it leads to from group 0; NULL: `next` is taken
     bool keeps;             // its material later, too; else it is Lambertian
-    uint32_t factor;        // its albedo, or that of its class
+    bool splits;            // each of its terms keeps its shape, with a factor of its own
+    bool lacks;             // one of them has none to keep: it is as its quotient is
+    spectrum part[FORM_TERMS]; // over the value of its factor as it is; black: there is none to keep
+    uint32_t factor;        // its albedo, or that of its class, or the first of its terms'
     spectrum scale;         // what is left of a later answer when that factor is taken out
 };
 
@@ -35,8 +39,8 @@ struct symbolic {
     const struct symbolic_object *objects;
     const int *object_of_shape; // CHAIN_FIXED: none
     const bool *two_sided;      // by shape
-    uint32_t bounces, factors; // factors: albedos
-    const uint32_t *next; // [group][factor]: the group that an albedo leads to
+    uint32_t bounces, factors; // factors: that later hops step by
+    const uint32_t *next; // [group][factor]: the group that one leads to
     bool survey; // only finds out what is seen first
 };
 

@@ -15,7 +15,7 @@
 
 #include "math/vec.h"
 
-enum { CHAIN_MARKS = 32, CHAIN_FIXED = -1 };
+enum { CHAIN_MARKS = 64, CHAIN_FIXED = -1 };
 
 enum chain_way { CHAIN_PATH, CHAIN_LIGHT, CHAIN_WAYS };
 
@@ -36,6 +36,7 @@ struct chain {
     uint8_t first_of_light, later_of_light; // enum chain_way: the list that a light sample takes
     struct marks first[CHAIN_WAYS];
     struct marks later[CHAIN_WAYS];
+    struct marks met; // of the path as it came to a vertex that adds several to each
 };
 
 static inline void marks_one(struct marks *m, uint32_t index) {

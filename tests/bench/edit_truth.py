@@ -244,7 +244,7 @@ def main():
     a.add_argument("--scene", action="append", choices=SCENES)
     for name, value in (("size", 48), ("spp", 512), ("truth", 512), ("edits", 10)):
         a.add_argument("--" + name, type=int, default=value)
-    a.add_argument("--later", default="kept", choices=("kept", "lambertian"))
+    a.add_argument("--later", default="kept", choices=("kept", "lambertian", "terms"))
     a.add_argument("--series", action="append")
     a.add_argument("--kind", action="append", choices=sorted(set(KINDS)))
     for name in ("sharp", "all-bounces", "caustic", "check"):

@@ -76,7 +76,7 @@ static void same_paths(const struct polynomial_options *options) {
     static double a[3 * PLANE], b[3 * PLANE];
     struct polynomial_options o = *options;
     struct polynomial_report report;
-    struct edited e;
+    struct edited e, was;
     o.job.scene = scene_path("scene.xml");
     o.output = tensor_path;
     o.command = o.version = "";
@@ -85,8 +85,10 @@ static void same_paths(const struct polynomial_options *options) {
         exit(1);
     struct tensor_file *f = tensor_open(tensor_path);
     CHECK(f && tensor_check_values(f));
+    edited_open(&was, &o, tensor_get(f));
     write_scene(after);
     edited_open(&e, &o, tensor_get(f));
+    e.was = &was;
     edited_contract(&e, tensor_get(f), false, a);
     plain_trace(&e.p, &e.response, (uint32_t)o.job.spp, b);
     double worst = 0, size = 0;
@@ -94,11 +96,13 @@ static void same_paths(const struct polynomial_options *options) {
         worst = fmax(worst, fabs(a[i] - b[i]));
         size = fmax(size, fabs(b[i]));
     }
-    printf("series %u,%u, %u bounces, tail %d: %u groups, %u coefficients; differs by %.2g of the "
-           "brightest, %.3g\n", o.series[0], o.series[1], o.bounces, (int)o.tail, report.groups,
+    printf("series %u,%u, %u bounces, later %s: %u groups, %u coefficients; differs by %.2g of the "
+           "brightest, %.3g\n", o.series[0], o.series[1], o.bounces, polynomial_laters[o.later],
+           report.groups,
            report.coefficients, worst / size, size);
     CHECK(worst < 1e-4 * size && report.rejected == 0);
     edited_close(&e);
+    edited_close(&was);
     tensor_close(f);
 }
 
@@ -110,6 +114,10 @@ int main(void) {
     same_paths(&(struct polynomial_options){.job = job, .bounces = 4, .series = {16, 1, 1, 1}});
     same_paths(&(struct polynomial_options){.job = job, .bounces = 2, .series = {32, 8}});
     same_paths(&(struct polynomial_options){.job = job, .bounces = 3, .series = {16, 4, 1}});
+    same_paths(&(struct polynomial_options){.job = job, .bounces = 3, .series = {16, 1, 1},
+                                            .later = LATER_TERMS});
+    same_paths(&(struct polynomial_options){.job = job, .bounces = 3, .series = {16, 4, 1},
+                                            .later = LATER_TERMS});
     if (full_mode()) {
         same_paths(&(struct polynomial_options){.job = job, .bounces = 2, .series = {64, 16}});
         same_paths(&(struct polynomial_options){.job = job, .bounces = 3, .series = {128, 8, 1}});

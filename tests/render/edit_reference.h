@@ -2,7 +2,8 @@
 // For tests of editing tensors with bounces: the weights of an edited scene, a contraction that is
 // plain to see, and a path tracer whose surfaces answer as the tensor's model of them says: with the
 // material itself where the eye sees it, Lambertian with the equivalent albedo (or by a coarse curve)
-// later. It draws directions as the symbolic response does and evaluates on its own.
+// later; where terms have factors of their own (--later terms), with those of the scene as it was, each
+// times the change of its factor. It draws directions as the symbolic response does and evaluates on its own.
 #pragma once
 
 #include "driver/precompute_polynomial.h"
@@ -16,6 +17,7 @@ struct edited {
     struct polynomial p;
     struct response response; // of the reference
     bool flat;                // Lambertian where the eye sees it, too
+    const struct edited *was; // the scene as it was, where terms have factors; or NULL
     double (*weights)[3];     // by object and place: f_q c_A c_B
     uint32_t first[64];   // of an object in `weights`
     double (*albedos)[3];     // by object, at later hops
@@ -43,6 +45,7 @@ static inline void edited_factors(struct edited *e, const struct tensor *tensor,
     for (uint32_t i = 0; i < p->plan.count; i++) {
         const struct symbolic_object *o = &p->objects[i];
         for (uint32_t t = 0; t < o->form->terms; t++) {
+            const uint32_t step = p->groups.step[i] + t;
             edit_plan_weights(&p->plan, i, t, w);
             told_albedo(tensor, i, t, a);
             for (uint32_t j = 0; j < symbolic_places(o->form, t); j++)
@@ -51,6 +54,10 @@ static inline void edited_factors(struct edited *e, const struct tensor *tensor,
                     const uint32_t place = o->first[t] + j;
                     e->weights[e->first[i] + place][k] = c;
                     e->albedos[i][k] += p->plan.objects[i].share[t][k] * ce;
+                    if (o->splits) {
+                        top[step][k] += ce;
+                        bottom[step][k] += a[3 * j + k];
+                    }
                     if (!o->second)
                         continue;
                     const uint32_t f = p->groups.last[o->second[place]];
@@ -61,12 +68,14 @@ static inline void edited_factors(struct edited *e, const struct tensor *tensor,
     }
     for (uint32_t i = 0; i < p->plan.count; i++)
         for (int k = 0; k < 3; k++)
-            e->factors[classes->of[i]][k] += classes->share[i][k] * e->albedos[i][k];
+            if (!p->objects[i].splits)
+                e->factors[p->groups.step[i]][k] += classes->share[i][k] * e->albedos[i][k];
     for (uint32_t i = 0; i < p->plan.count; i++)
         for (int k = 0; k < 3; k++)
-            e->albedos[i][k] = classes->base[i][k] * e->factors[classes->of[i]][k];
-    for (uint32_t f = classes->count; f < p->groups.factor_count; f++)
-        for (int k = 0; k < 3; k++)
+            if (!p->objects[i].splits)
+                e->albedos[i][k] = classes->base[i][k] * e->factors[p->groups.step[i]][k];
+    for (uint32_t f = 0; f < p->groups.factor_count; f++)
+        for (int k = 0; k < 3 && p->groups.factors[f].term != EDIT_ALBEDO; k++)
             e->factors[f][k] = bottom[f][k] > 0 ? top[f][k] / bottom[f][k] : 0;
 }
 
@@ -90,6 +99,7 @@ struct reference_closure {
     const struct edited *edited;
     const struct closure *inside; // of the material as it is; NULL: as below
     uint32_t object;
+    const struct closure *shape; // of the material as it was, where its terms have factors
     bool coarse;
     bool below;
     const struct bin_sampler *sampler;
@@ -124,6 +134,33 @@ static inline spectrum coarse_value(const struct reference_closure *c, struct an
     return spectrum_rgb((float)sum[0], (float)sum[1], (float)sum[2]);
 }
 
+// Each term as it was times the change of its factor, or where it was black, all alike.
+static inline spectrum terms_value(const struct reference_closure *c, struct angles *a) {
+    const struct edited *e = c->edited, *was = e->was;
+    const struct form *f = was->p.plan.objects[c->object].form;
+    double sum[3] = {0};
+    for (uint32_t t = 0; t < f->terms; t++) {
+        const uint32_t step = e->p.groups.step[c->object] + t;
+        const double *now = e->factors[step], *old = was->factors[step];
+        const bool keeps = !spectrum_is_black(was->p.objects[c->object].part[t]);
+        double v[3];
+        if (keeps)
+            form_term_eval(f, &f->term[t], a, v);
+        else
+            quotient_cos(&f->term[t].quotient, a, v);
+        for (int k = 0; k < 3; k++)
+            sum[k] += (double)c->texture[t][k] * v[k] *
+                      (keeps ? f->term[t].scale[k] * now[k] / old[k] : now[k]);
+    }
+    return spectrum_rgb((float)sum[0], (float)sum[1], (float)sum[2]);
+}
+
+static inline float terms_pdf(const struct reference_closure *c, vec3 wi) {
+    float pdf;
+    closure_eval(c->shape, wi, &pdf);
+    return c->edited->was->p.objects[c->object].lacks ? 0.5f * (pdf + fabsf(wi[2]) * INV_PI) : pdf;
+}
+
 static inline spectrum reference_eval(const struct closure *closure, vec3 wi, float *pdf) {
     const struct reference_closure *c = (const void *)closure;
     const struct edited *e = c->edited;
@@ -131,7 +168,7 @@ static inline spectrum reference_eval(const struct closure *closure, vec3 wi, fl
     *pdf = 0;
     if (!(up[2] > 0))
         return spectrum_grey(0);
-    if (!c->inside && !c->coarse) {
+    if (!c->inside && !c->coarse && !c->shape) {
         const double *d = e->albedos[c->object];
         *pdf = up[2] * INV_PI;
         return spectrum_rgb((float)d[0], (float)d[1], (float)d[2]) * *pdf;
@@ -139,6 +176,10 @@ static inline spectrum reference_eval(const struct closure *closure, vec3 wi, fl
     const struct direction i = direction_from(up);
     struct angles a = angles_between(c->view.wo, i);
     float other;
+    if (c->shape) {
+        *pdf = terms_pdf(c, wi);
+        return terms_value(c, &a);
+    }
     *pdf = (float)bin_sampler_pdf_sa(c->sampler, &c->view, i, &a);
     return c->inside ? closure_eval(c->inside, wi, &other) : coarse_value(c, &a);
 }
@@ -146,7 +187,13 @@ static inline spectrum reference_eval(const struct closure *closure, vec3 wi, fl
 static inline bool reference_sample(const struct closure *closure, float u1, struct vec2 u2,
                                     struct bsdf_sample *s) {
     const struct reference_closure *c = (const void *)closure;
-    if (!c->inside && !c->coarse)
+    const bool lacks = c->shape && c->edited->was->p.objects[c->object].lacks;
+    if (c->shape && !(lacks && u1 < 0.5f)) {
+        if (!closure_sample(c->shape, lacks ? 2 * u1 - 1 : u1, u2, s))
+            return false;
+        if (c->below)
+            s->wi[2] = -s->wi[2];
+    } else if (!c->inside && !c->coarse)
         s->wi = warp_cosine_hemisphere(u2);
     else
         s->wi = direction_round(bin_sampler_sample(c->sampler, &c->view, (double)u1, (double)u2.x,
@@ -186,7 +233,10 @@ static inline const struct closure *reference_resolve(const struct response *sel
     c->object = (uint32_t)object;
     c->inside = depth == 0 && !e->flat ? inside : NULL;
     c->below = wo[2] < 0;
+    c->shape = NULL;
     c->coarse = depth > 0 && first_later && e->p.objects[object].second;
+    if (depth > 0 && !c->coarse && e->p.objects[object].splits)
+        c->shape = bsdf_resolve(e->was->p.job.scene->shapes[s->shape].bsdf, &s->point, wo, ctx->stack);
     if (c->below)
         wo[2] = -wo[2];
     c->sampler = c->coarse ? &e->p.objects[object].coarse : &e->p.objects[object].sampler;

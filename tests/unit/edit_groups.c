@@ -18,7 +18,7 @@ static void groups_are_multisets(uint32_t objects, uint32_t bounces) {
     const struct edit_plan plan = {.count = objects};
     const uint32_t series[EDIT_MOST_BOUNCES] = {64, 1, 1, 1, 1, 1, 1, 1};
     struct edit_groups g;
-    CHECK(edit_groups_init(&g, &plan, NULL, series, bounces));
+    CHECK(edit_groups_init(&g, &plan, NULL, NULL, series, bounces));
     CHECK(g.count == choose(bounces - 1 + objects, objects));
     CHECK(g.count == edit_groups_count(objects, bounces, 0));
     uint32_t wrong = 0, longest = 0;
@@ -169,7 +169,7 @@ static void coarse_widths(struct form *f, uint32_t fine, uint32_t coarse, uint32
     const struct edit_plan plan = {.objects = &object, .count = 1};
     const uint32_t series[2] = {fine, coarse};
     struct edit_groups g;
-    CHECK(edit_groups_init(&g, &plan, NULL, series, 2));
+    CHECK(edit_groups_init(&g, &plan, NULL, NULL, series, 2));
     uint32_t before = 0;
     for (uint32_t j = 0; j < fine; j++) {
         const uint32_t bin = g.factors[g.last[g.second[0][j]]].bin;
