@@ -36,35 +36,27 @@ static void add_bf16(const uint16_t *restrict row, const float *weight, float *r
     }
 }
 
-// A row of any kind; what is zero adds nothing.
-static void add_stored(const struct run *r, size_t tile, uint32_t coefficient, const float *weight,
-                       float *sum) {
-    float row[ROW];
-    const uint32_t entry = r->t.rows.entries[tile * r->coefficients + coefficient];
-    if (row_way_of(entry) == WAY_row_zero)
+// sum += sum_k weight[k] row[index[k]], or row[k] where index is NULL; one channel after the other.
+static void add_rows(const struct run *r, size_t tile, const uint32_t *index, const float *weight,
+                     uint32_t count, float *sum) {
+    if (r->t.storage == TENSOR_ROWS) {
+        rows_add(&r->t.rows, r->t.data, r->coefficients, tile, index, weight, count, sum);
         return;
-    tensor_row(&r->t, r->coefficients, tile, coefficient, row);
-    add_floats(row, weight, sum);
-}
-
-// sum += weight * row, one channel after the other.
-static void add_row(const struct run *r, size_t tile, uint32_t coefficient, const float *weight,
-                    float *sum) {
-    const size_t at = (tile * r->coefficients + coefficient) * ROW;
-    if (r->t.storage == TENSOR_F32)
-        add_floats((const float *)r->t.data + at, weight, sum);
-    else if (r->t.storage == TENSOR_BF16)
-        add_bf16((const uint16_t *)r->t.data + at, weight, sum);
-    else
-        add_stored(r, tile, coefficient, weight, sum);
+    }
+    for (uint32_t k = 0; k < count; k++, weight += TILE_CHANNELS) {
+        const size_t at = (tile * r->coefficients + (index ? index[k] : k)) * ROW;
+        if (r->t.storage == TENSOR_F32)
+            add_floats((const float *)r->t.data + at, weight, sum);
+        else
+            add_bf16((const uint16_t *)r->t.data + at, weight, sum);
+    }
 }
 
 static void dot_tile(void *ctx, size_t tile, int worker) {
     const struct run *r = ctx;
     float sum[ROW] = {0};
     (void)worker;
-    for (uint32_t c = 0; c < r->coefficients; c++)
-        add_row(r, tile, c, r->weight + (size_t)c * TILE_CHANNELS, sum);
+    add_rows(r, tile, NULL, r->weight, r->coefficients, sum);
     memcpy(r->out + tile * ROW, sum, sizeof sum);
 }
 
@@ -78,9 +70,7 @@ void tiles_dot(struct tensor_data t, const float *weight, uint32_t coefficients,
 static void add_terms_tile(void *ctx, size_t tile, int worker) {
     const struct run *r = ctx;
     (void)worker;
-    for (uint32_t k = 0; k < r->terms; k++)
-        add_row(r, tile, r->term[k], r->weight + (size_t)k * TILE_CHANNELS,
-                r->out + tile * ROW);
+    add_rows(r, tile, r->term, r->weight, r->terms, r->out + tile * ROW);
 }
 
 void tiles_add_terms(struct tensor_data t, const float *weight,
@@ -120,9 +110,8 @@ static void contract_tile(void *ctx, size_t tile, int worker) {
     (void)worker;
     memset(out, 0, (size_t)c->reduced * ROW * sizeof *out);
     for (uint32_t k = 0; k < c->reduced; k++)
-        for (size_t i = c->start[k]; i < c->start[k + 1]; i++)
-            add_row(r, tile, c->index[i], c->weight + i * TILE_CHANNELS,
-                    out + (size_t)k * ROW);
+        add_rows(r, tile, c->index + c->start[k], c->weight + (size_t)c->start[k] * TILE_CHANNELS,
+                 c->start[k + 1] - c->start[k], out + (size_t)k * ROW);
 }
 
 void tiles_contract(struct tensor_data t, const struct contraction *c, uint32_t coefficients,

@@ -12,4 +12,10 @@ static void decode(const void *in, float *values) {
         values[i] = bf16_to_float(((const uint16_t *)in)[i]);
 }
 
-const struct row_way row_bfloat16 = {"bfloat16", "16 bits a value", 2 * ROW_VALUES, encode, decode};
+static void add(const void *in, const float *weight, struct row_sums *sums) {
+    float values[ROW_VALUES];
+    decode(in, values);
+    row_add_values(values, weight, sums);
+}
+
+const struct row_way row_bfloat16 = {"bfloat16", "16 bits a value", 2 * ROW_VALUES, encode, decode, add};

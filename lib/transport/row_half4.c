@@ -9,5 +9,9 @@ static void decode(const void *in, float *values) {
     row_unpack_means(in, 4, values);
 }
 
+static void add(const void *in, const float *weight, struct row_sums *sums) {
+    row_add_packed(in, ROW_MEANS / ROW_CHANNELS, 4, weight, sums->mean, sums->base);
+}
+
 const struct row_way row_half4 = {"half4", "means of 2x2 pixels, of 4 bits",
-                                48, encode, decode};
+                                48, encode, decode, add};

@@ -9,5 +9,9 @@ static void decode(const void *in, float *values) {
     row_unpack(in, ROW_LANES, 8, values);
 }
 
+static void add(const void *in, const float *weight, struct row_sums *sums) {
+    row_add_packed(in, ROW_LANES, 8, weight, sums->lane, sums->base);
+}
+
 const struct row_way row_int8 = {"int8", "8 bits a value between a channel's ends in the row",
-                               16 + ROW_VALUES * 8 / 8, encode, decode};
+                               16 + ROW_VALUES * 8 / 8, encode, decode, add};

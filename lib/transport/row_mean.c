@@ -3,7 +3,7 @@
 
 static void encode(const float *values, void *out) {
     float *mean = out;
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < ROW_CHANNELS; c++) {
         double sum = 0;
         for (int i = 0; i < ROW_LANES; i++)
             sum += (double)values[c * ROW_LANES + i];
@@ -17,4 +17,9 @@ static void decode(const void *in, float *values) {
         values[i] = ((const float *)in)[i / ROW_LANES];
 }
 
-const struct row_way row_mean = {"mean", "one value a channel", 16, encode, decode};
+static void add(const void *in, const float *weight, struct row_sums *sums) {
+    for (int c = 0; c < ROW_CHANNELS; c++)
+        sums->base[c] += weight[c] * ((const float *)in)[c];
+}
+
+const struct row_way row_mean = {"mean", "one value a channel", 16, encode, decode, add};

@@ -39,5 +39,11 @@ static void decode(const void *in, float *values) {
             values[c * ROW_LANES + i] = p[c * ROW_LANES + i] * unit_of(p[3 * ROW_LANES + i]);
 }
 
+static void add(const void *in, const float *weight, struct row_sums *sums) {
+    float values[ROW_VALUES];
+    decode(in, values);
+    row_add_values(values, weight, sums);
+}
+
 const struct row_way row_rgbe = {"rgbe", "8 bits a value and an exponent a pixel", 4 * ROW_LANES,
-                                 encode, decode};
+                                 encode, decode, add};
