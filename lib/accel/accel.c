@@ -32,6 +32,7 @@ struct accel {
     bool has_instances;
     struct placed_quadric *quadrics; // by shape index; NULL: the scene has none
     struct few *few;                 // NULL: the scene is too large for it
+    struct few *largest;             // of such a scene; NULL: no facet is large
     atomic_llong bytes;
 };
 
@@ -142,9 +143,9 @@ static RTCGeometry mesh_geometry(struct accel *a, const struct mesh *m) {
     return g;
 }
 
-static RTCScene new_scene(struct accel *a) {
+static RTCScene new_scene(struct accel *a, bool may_leak) {
     RTCScene s = rtcNewScene(a->device);
-    rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(s, may_leak ? RTC_SCENE_FLAG_NONE : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
     return s;
 }
@@ -199,10 +200,10 @@ struct accel *accel_create(const struct scene *scene, int threads) {
     rtcSetDeviceMemoryMonitorFunction(a->device, count_bytes, a);
     a->shape_count = scene->shape_count;
     a->has_instances = scene->instance_count > 0;
-    a->world = new_scene(a);
+    a->world = new_scene(a, scene->may_leak);
     a->groups = mem_array(scene->group_count, sizeof *a->groups);
     for (; a->group_count < scene->group_count; a->group_count++)
-        a->groups[a->group_count] = new_scene(a);
+        a->groups[a->group_count] = new_scene(a, scene->may_leak);
     for (uint32_t i = 0; i < scene->shape_count; i++)
         if (!attach_shape(a, scene, i))
             goto fail;
@@ -214,6 +215,8 @@ struct accel *accel_create(const struct scene *scene, int threads) {
     if (rtcGetDeviceError(a->device) != RTC_ERROR_NONE)
         goto fail;
     a->few = few_create(scene);
+    if (!a->few)
+        a->largest = few_create_largest(scene);
     return a;
 fail:
     accel_destroy(a);
@@ -230,6 +233,7 @@ void accel_destroy(struct accel *a) {
     if (a->device)
         rtcReleaseDevice(a->device);
     few_destroy(a->few);
+    few_destroy(a->largest);
     mem_free(a->groups);
     mem_free(a->quadrics);
     mem_free(a);
@@ -387,5 +391,20 @@ uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PAC
     uint32_t blocked = 0;
     for (int i = 0; i < ACCEL_PACKET; i++)
         blocked |= (uint32_t)(valid[i] && p.tfar[i] < 0) << i;
+    return blocked;
+}
+
+uint32_t accel_occluded_each(const struct accel *a, const struct ray rays[ACCEL_PACKET],
+                             uint32_t active) {
+    uint32_t blocked = 0;
+    if (a->largest) {
+        struct accel_rays r;
+        rays_from(rays, active, &r);
+        blocked = few_occluded(a->largest, &r);
+    }
+    for (uint32_t left = active & ~blocked; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        blocked |= (uint32_t)accel_occluded(a, &rays[i]) << i;
+    }
     return blocked;
 }

@@ -12,6 +12,7 @@
 
 #include "accel/few_box.h"
 #include "accel/few_facet.h"
+#include "accel/few_largest.h"
 #include "accel/few_sphere.h"
 #include "base/mem.h"
 #include "scene/quadric.h"
@@ -113,6 +114,22 @@ struct few *few_create(const struct scene *s) {
     f->quadrics = mem_array(quadrics, sizeof *f->quadrics);
     for (uint32_t i = 0; i < s->shape_count; i++)
         add_shape(f, s, i);
+    return f;
+}
+
+struct few *few_create_largest(const struct scene *s) {
+    struct few_facet largest[FEW_LARGEST];
+    const uint32_t count = few_largest_of(s, largest);
+    if (!count)
+        return NULL;
+    struct few *f = mem_array(1, sizeof *f);
+    f->facets = mem_array(count, sizeof *f->facets);
+    f->boxes = mem_array(count, sizeof *f->boxes);
+    for (uint32_t i = 0; i < count; i++) {
+        f->facets[i] = largest[i];
+        f->boxes[i] = (struct few_box){.first = i, .count = 1};
+    }
+    f->facet_count = f->box_count = count;
     return f;
 }
 

@@ -86,28 +86,30 @@ static bool find_pair(const struct mesh *m, uint32_t triangle, double q[4][3], u
     return false;
 }
 
+void few_facet_of(const struct mesh *m, uint32_t shape, uint32_t triangle, struct few_facet *f) {
+    double q[4][3], n[3];
+    *f = (struct few_facet){.count = 2, .shape = shape, .primitive = {triangle, triangle + 1}};
+    if (!find_pair(m, triangle, q, f->first)) {
+        f->count = 1;
+        f->first[0] = 0;
+        for (uint32_t k = 0; k < 3; k++)
+            load(m, triangle, k, q[k]);
+    }
+    const int corners = f->count == 2 ? 4 : 3;
+    for (int k = 0; k < corners; k++)
+        set_edge(f, k, q[k], q[(k + 1) % corners]);
+    if (f->count == 2)
+        set_edge(f, FACET_DIAGONAL, q[0], q[2]);
+    normal_of(q, n);
+    for (int i = 0; i < 3; i++) {
+        f->normal[i] = (float)n[i];
+        f->corner[i] = (float)q[0][i];
+    }
+}
+
 uint32_t few_facets_of(const struct mesh *m, uint32_t shape, struct few_facet *facets) {
     uint32_t count = 0;
-    for (uint32_t t = 0; t < m->triangle_count; t += facets[count++].count) {
-        struct few_facet *f = &facets[count];
-        double q[4][3], n[3];
-        *f = (struct few_facet){.count = 2, .shape = shape, .primitive = {t, t + 1}};
-        if (!find_pair(m, t, q, f->first)) {
-            f->count = 1;
-            f->first[0] = 0;
-            for (uint32_t k = 0; k < 3; k++)
-                load(m, t, k, q[k]);
-        }
-        const int corners = f->count == 2 ? 4 : 3;
-        for (int k = 0; k < corners; k++)
-            set_edge(f, k, q[k], q[(k + 1) % corners]);
-        if (f->count == 2)
-            set_edge(f, FACET_DIAGONAL, q[0], q[2]);
-        normal_of(q, n);
-        for (int i = 0; i < 3; i++) {
-            f->normal[i] = (float)n[i];
-            f->corner[i] = (float)q[0][i];
-        }
-    }
+    for (uint32_t t = 0; t < m->triangle_count; t += facets[count++].count)
+        few_facet_of(m, shape, t, &facets[count]);
     return count;
 }

@@ -19,5 +19,7 @@ struct few_facet {
     uint32_t first[2];            // which vertex of the triangle q0 is
 };
 
+// Of a triangle, and of the next one where the two make a quadrilateral.
+void few_facet_of(const struct mesh *m, uint32_t shape, uint32_t triangle, struct few_facet *f);
 // Facets of a mesh, at most one a triangle; their number. Room for all is the caller's.
 uint32_t few_facets_of(const struct mesh *m, uint32_t shape, struct few_facet *facets);

@@ -203,6 +203,8 @@ bool job_open(struct job *job, const struct job_options *o) {
     reading.threads = o->threads;
     const double start = time_seconds();
     job->scene = scene_read(o->scene, &reading);
+    if (job->scene && o->may_leak)
+        job->scene->may_leak = true;
     if (job->scene && o->edit_scene)
         o->edit_scene(job->scene, o->edit_user);
     if (job->scene && receiver_place(&o->receiver, &reading, job->scene))

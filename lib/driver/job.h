@@ -24,6 +24,7 @@ struct job_options {
     bool variance, light_groups, paths;
     double clamp;                 // of indirect light (sink/film.h); 0: none
     const char *cryptomatte;      // "object,material" or NULL
+    bool may_leak;                // as scene->may_leak, whatever the file says
     bool adaptive;                // samples go where a pilot finds noise
     // Changes the scene between reading it and building the world; or NULL.
     void (*edit_scene)(struct scene *s, void *user);

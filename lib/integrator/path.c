@@ -169,13 +169,14 @@ struct wave {
 };
 
 // The packet that begins at `first` of a list. Embree's packets may return other hits when other rays
-// are in them, so these are 4x4 blocks of pixels, always the same; without it any lanes will do.
+// are in them, so where it may be given one (`alike`: the rays may run side by side) these are 4x4
+// blocks of pixels, always the same; else any lanes will do.
 static struct packet packet_at(const struct world *w, const uint16_t *list, uint32_t count,
-                               uint32_t first) {
+                               uint32_t first, bool alike) {
     struct packet p = {list + first, 0};
     const uint32_t left = count - first;
     const int most = left < SINK_LANES ? (int)left : SINK_LANES;
-    if (accel_mixes_packets(w->accel))
+    if (accel_mixes_packets(w->accel) || !(alike || w->packets_pay))
         p.count = most;
     else
         while (p.count < most && p.lanes[p.count] / SINK_LANES == p.lanes[0] / SINK_LANES)
@@ -193,13 +194,27 @@ static bool run_together(const struct lane *lanes, const struct packet *p) {
     return length2(sum) > sqr(together * (float)p->count);
 }
 
+// How the rays of a packet are traced: one by one, or by Embree as a packet of any rays or of such
+// that run together.
+enum tracing { TRACE_EACH, TRACE_ANY, TRACE_TOGETHER };
+
+static enum tracing tracing_of(const struct world *w, const struct packet *p, bool together) {
+    if (together)
+        return TRACE_TOGETHER;
+    const bool pays = w->packets_pay && p->count >= LEAST_IN_PACKET;
+    return pays || accel_mixes_packets(w->accel) ? TRACE_ANY : TRACE_EACH;
+}
+
 static void finish_as_packet(struct trace_context *ctx, struct lane *lanes, const struct packet *p,
-                             bool together) {
+                             enum tracing how) {
+    const struct accel *accel = ctx->world->accel;
     struct ray rays[SINK_LANES];
     const uint32_t active = (1u << p->count) - 1;
     for (int i = 0; i < SINK_LANES; i++)
         rays[i] = lanes[p->lanes[i < p->count ? i : 0]].shadow.ray;
-    const uint32_t blocked = accel_occluded16(ctx->world->accel, rays, active, together);
+    const uint32_t blocked = how == TRACE_EACH
+                                 ? accel_occluded_each(accel, rays, active)
+                                 : accel_occluded16(accel, rays, active, how == TRACE_TOGETHER);
     ctx->shadow_rays += (uint64_t)p->count;
     for (int i = 0; i < p->count; i++)
         if (!(blocked >> i & 1))
@@ -211,14 +226,13 @@ static void finish_as_packet(struct trace_context *ctx, struct lane *lanes, cons
 static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const uint16_t *list,
                            uint32_t count, bool first) {
     const struct world *w = ctx->world;
+    const bool mixes = accel_mixes_packets(w->accel);
     struct packet p;
     for (uint32_t i = 0; i < count; i += (uint32_t)p.count) {
-        p = packet_at(w, list, count, i);
-        const bool mixes = accel_mixes_packets(w->accel);
-        const bool together = !mixes && first && run_together(lanes, &p);
-        const bool pays = mixes || together || (w->packets_pay && p.count >= LEAST_IN_PACKET);
-        if (!w->shadow_rays_may_pass && pays)
-            finish_as_packet(ctx, lanes, &p, together);
+        p = packet_at(w, list, count, i, first);
+        if (!w->shadow_rays_may_pass)
+            finish_as_packet(ctx, lanes, &p,
+                             tracing_of(w, &p, first && !mixes && run_together(lanes, &p)));
         else
             for (int k = 0; k < p.count; k++)
                 vertex_finish_light(ctx, lanes[p.lanes[k]].sample, &lanes[p.lanes[k]].shadow);
@@ -229,14 +243,14 @@ static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const 
 static void trace_hits(struct trace_context *ctx, const struct lane *lanes, const struct packet *p,
                        bool camera, struct accel_hit *hits) {
     const struct accel *accel = ctx->world->accel;
+    const enum tracing how = tracing_of(ctx->world, p, camera);
     ctx->rays += (uint64_t)p->count;
-    if (camera || accel_mixes_packets(accel) ||
-        (ctx->world->packets_pay && p->count >= LEAST_IN_PACKET)) {
+    if (how != TRACE_EACH) {
         struct ray rays[SINK_LANES];
         struct accel_hit found[SINK_LANES];
         for (int i = 0; i < SINK_LANES; i++)
             rays[i] = lanes[p->lanes[i < p->count ? i : 0]].ray;
-        accel_intersect16(accel, rays, (1u << p->count) - 1, camera, found);
+        accel_intersect16(accel, rays, (1u << p->count) - 1, how == TRACE_TOGETHER, found);
         for (int i = 0; i < p->count; i++)
             hits[p->lanes[i]] = found[i];
         return;
@@ -359,7 +373,7 @@ static void advance(const struct path *p, struct trace_context *ctx, struct wave
     struct accel_hit hits[MOST_LANES]; // by lane
     struct packet packet;
     for (uint32_t first = 0; first < w->count; first += (uint32_t)packet.count) {
-        packet = packet_at(ctx->world, w->alive, w->count, first);
+        packet = packet_at(ctx->world, w->alive, w->count, first, camera);
         find_hits(ctx, w->lanes, &packet, camera, hits);
     }
     if (camera)

@@ -62,6 +62,13 @@ static bool read_child(struct reader *r, struct xml_node *child) {
     return false;
 }
 
+// Whether a child is Mitsuba's wish for watertight intersections, which are the default here.
+static bool is_watertight(const struct xml_node *child) {
+    const char *name = xml_get(child, "name");
+    return strcmp(child->tag, "boolean") == 0 && name &&
+           strcmp(name, "embree_use_robust_intersections") == 0;
+}
+
 // Emitters that no shape has taken.
 static bool read_emitter(struct reader *r, struct xml_node *child) {
     const char *id = xml_get(child, "id");
@@ -76,9 +83,12 @@ static bool read_emitter(struct reader *r, struct xml_node *child) {
 }
 
 static bool read_tree(struct reader *r, struct xml_node *root) {
-    for (struct xml_node *c = root->first; c; c = c->next)
-        if (!read_child(r, c))
+    for (struct xml_node *c = root->first; c; c = c->next) {
+        if (is_watertight(c))
+            r->scene->may_leak = strcmp(xml_get(c, "value"), "false") == 0;
+        else if (!read_child(r, c))
             return false;
+    }
     for (struct xml_node *c = root->first; c; c = c->next)
         if (!read_emitter(r, c))
             return false;

@@ -95,6 +95,8 @@ struct scene {
     int sample_count;             // spp asked by the file; 0: none
     struct object *integrator;
 
+    bool may_leak; // rays may slip through between triangles that share an edge, and take less time
+
     double centre[3];  // every position is stored relative to this point of the file's world
     vec3 bounds_min, bounds_max; // of all shapes and instances, relative to centre
 };

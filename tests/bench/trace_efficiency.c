@@ -42,6 +42,8 @@ void __real_accel_intersect16(const struct accel *, const struct ray *, uint32_t
 uint32_t __real_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 bool __wrap_accel_intersect(const struct accel *, const struct ray *, struct accel_hit *);
 bool __wrap_accel_occluded(const struct accel *, const struct ray *);
+uint32_t __real_accel_occluded_each(const struct accel *, const struct ray *, uint32_t);
+uint32_t __wrap_accel_occluded_each(const struct accel *, const struct ray *, uint32_t);
 void __wrap_accel_intersect16(const struct accel *, const struct ray *, uint32_t, bool, struct accel_hit *);
 uint32_t __wrap_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 
@@ -57,19 +59,26 @@ bool __wrap_accel_occluded(const struct accel *a, const struct ray *r) {
     return __real_accel_occluded(a, r);
 }
 
-void __wrap_accel_intersect16(const struct accel *a, const struct ray *r, uint32_t active,
-                              bool coherent, struct accel_hit *h) {
+static void record_packet(const struct ray *r, uint32_t active, bool shadow) {
     for (int i = 0; recording && i < 16; i++)
         if (active >> i & 1)
-            record(&r[i], false);
+            record(&r[i], shadow);
+}
+
+uint32_t __wrap_accel_occluded_each(const struct accel *a, const struct ray *r, uint32_t active) {
+    record_packet(r, active, true);
+    return __real_accel_occluded_each(a, r, active);
+}
+
+void __wrap_accel_intersect16(const struct accel *a, const struct ray *r, uint32_t active,
+                              bool coherent, struct accel_hit *h) {
+    record_packet(r, active, false);
     __real_accel_intersect16(a, r, active, coherent, h);
 }
 
 uint32_t __wrap_accel_occluded16(const struct accel *a, const struct ray *r, uint32_t active,
                                 bool coherent) {
-    for (int i = 0; recording && i < 16; i++)
-        if (active >> i & 1)
-            record(&r[i], true);
+    record_packet(r, active, true);
     return __real_accel_occluded16(a, r, active, coherent);
 }
 
