@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time relume beside Mitsuba 3 on the same scene files, in turn, and print the ratios.
 
-    peer_compare.py --relume PROGRAM SCENE:WxH:SPP ...
+    peer_compare.py --relume PROGRAM [--robust true|false|each] SCENE:WxH:SPP ...
 
 Render time only (no loading, no compilation), medians; each ratio twice, of wall clock and of
 processor seconds (user and system, all threads; ours without loading), since other work on the
@@ -12,7 +12,8 @@ which takes fewer rays. Equal error: time x relMSE, which is the time to a given
 falls as 1/N; relume with its own roulette, the better of sobol and lattice, and of one or two paths from
 each first hit, Mitsuba llvm of independent and multijitter (an earlier roulette does not help it). The error is the mean of
 (picture - A) (picture - B) over two independent references, so that their own noise drops out; both
-are Mitsuba's, each with 4 times the samples.
+are Mitsuba's, each with 4 times the samples. --robust: whether rays may not slip through between triangles, for both
+programs; or as each does by itself: relume's may not, Mitsuba's may.
 """
 import argparse
 import json
@@ -63,7 +64,8 @@ def relume(args, scene, size, spp, setting, seed, out):
         names.remove(TWO_PATHS)
         scene = sharing_first_hits(scene, 2)
     command = [args.relume, "render", scene, "-o", out, "--size", size, "--spp", str(spp),
-               "--sampler", sampler, "--seed", str(seed), "--quiet", "--json"]
+               "--sampler", sampler, "--seed", str(seed), "--quiet", "--json",
+               "-D", "robust=" + ("false" if args.robust == "false" else "true")]
     for name in names:
         command += ["-D", name]
     start = cpu_seconds()
@@ -71,12 +73,12 @@ def relume(args, scene, size, spp, setting, seed, out):
     return np.array([json.loads(result.stdout)["seconds"], cpu_seconds() - start])
 
 
-def mitsuba(scene, variant, size, spp, sampler, seed, out, passes=1):
+def mitsuba(args, scene, variant, size, spp, sampler, seed, out, passes=1):
     width, height = size.split("x")
     command = [sys.executable, str(Path(__file__).with_name("peer_mitsuba.py")), scene,
                "--variant", variant, "--width", width, "--height", height, "--spp", str(spp),
                "--sampler", sampler, "--repeats", "1", "--seed", str(seed), "--passes", str(passes),
-               "--out", out]
+               "--out", out, "--robust", "true" if args.robust == "true" else "false"]
     result = subprocess.run(command, check=True, capture_output=True, text=True)
     data = json.loads(result.stdout)
     # multijitter rounds the sample count up
@@ -97,7 +99,7 @@ def measure(args, scene, size, spp, folder):
     """Seconds (wall, processor) and relMSE of every renderer, all repeats in turn."""
     out, references = f"{folder}/out.exr", []
     for seed in (1001, 1002):
-        mitsuba(scene, "llvm_ad_rgb", size, spp, "independent", seed, out, 4)
+        mitsuba(args, scene, "llvm_ad_rgb", size, spp, "independent", seed, out, 4)
         references.append(read_rgb(out))
     loading = min(relume(args, scene, "16x16", 1, EQUAL, 0, out)[1] for _ in range(REPEATS))
     seconds, errors = {}, {}
@@ -107,7 +109,7 @@ def measure(args, scene, size, spp, folder):
             seconds.setdefault(setting, []).append(spent - [0, loading])
             errors.setdefault(setting, []).append(relmse(read_rgb(out), references))
         for peer in PEERS[repeat > 0:]: # the scalar one takes long: once
-            spent, more = mitsuba(scene, peer[0], size, spp, peer[1], repeat, out)
+            spent, more = mitsuba(args, scene, peer[0], size, spp, peer[1], repeat, out)
             seconds.setdefault(peer, []).append(spent)
             errors.setdefault(peer, []).append(relmse(read_rgb(out), references) * more)
     return ({key: np.median(value, axis=0) for key, value in seconds.items()},
@@ -135,6 +137,7 @@ def compare(args, scene, size, spp):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--relume", required=True)
+    parser.add_argument("--robust", choices=("true", "false", "each"), default="each")
     parser.add_argument("scenes", nargs="+", metavar="SCENE:WxH:SPP")
     args = parser.parse_args()
     for item in args.scenes:

@@ -52,6 +52,7 @@ def arguments():
     parser.add_argument("--integrator", default="path")
     parser.add_argument("--max-depth", type=int, help="default: as in the scene file")
     parser.add_argument("--rr-depth", type=int)
+    parser.add_argument("--robust", choices=("true", "false"), help="watertight intersections")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--seed", type=int, default=1, help="of the first timed repeat")
     parser.add_argument("--threads", type=int, help="default: all cores")
@@ -69,7 +70,8 @@ def main():
     if args.threads:
         dr.set_thread_count(args.threads)
     names = {"resx": args.width, "resy": args.height, "max_depth": args.max_depth,
-             "rr_depth": args.rr_depth, "sampler": args.sampler, "integrator": args.integrator}
+             "rr_depth": args.rr_depth, "sampler": args.sampler, "integrator": args.integrator,
+             "robust": args.robust}
     names = {key: str(value) for key, value in names.items() if value is not None}
     scene = mi.load_file(args.scene, **names)
     width, height = scene.sensors()[0].film().size()

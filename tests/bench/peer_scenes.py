@@ -5,7 +5,8 @@
     peer_scenes.py DATA OUT        DATA holds scenes/bitterli/{cornell-box,veach-mis,classroom}
 
 Each OUT/<scene>/scene.xml takes the parameters spp, resx, resy, integrator, sampler, max_depth,
-rr_depth and samples_per_pass (mitsuba -D name=value). The pixel filter is a box. Where Mitsuba can
+rr_depth, samples_per_pass and robust (mitsuba -D name=value): whether either program's rays are kept
+from slipping through between triangles. The pixel filter is a box. Where Mitsuba can
 be imported, classroom also gets scene_envmap.xml, its procedural sky baked to sky.exr.
 """
 import argparse
@@ -131,8 +132,9 @@ def convert(scene, width, height):
     head = [ET.Element("default", name=name, value=value) for name, value in (
         ("integrator", "path"), ("sampler", "independent"), ("spp", "64"),
         ("resx", str(width)), ("resy", str(height)), ("max_depth", depth), ("rr_depth", "5"),
-        ("samples_per_pass", "4294967295"))]
-    scene[:0] = head + [ET.fromstring(INTEGRATOR)]
+        ("samples_per_pass", "4294967295"), ("robust", "true"))]
+    robust = ET.Element("boolean", name="embree_use_robust_intersections", value="$robust")
+    scene[:0] = head + [ET.fromstring(INTEGRATOR), robust]
     scene.set("version", "3.0.0")
 
 
