@@ -11,12 +11,29 @@ struct compare_options {
     bool json;
 };
 
+#define WITH_ZTEST "With --ztest"
+#define WITH_MAP "With --map"
+
+// Whether no option needs another one that is not there.
+static bool options_fit(const struct compare_options *o) {
+    const struct option_table *table = &subcommand_compare.options;
+    const char *test = o->request.variance ? NULL : options_changed(table, WITH_ZTEST, o);
+    const char *map = o->request.map_path ? NULL : options_changed(table, WITH_MAP, o);
+    if (test)
+        log_error("compare: --%s goes with --ztest", test);
+    else if (map)
+        log_error("compare: --%s goes with --map", map);
+    return !test && !map;
+}
+
 static int run(const void *values, const char *command) {
     const struct compare_options *o = values;
     struct comparison_request request = o->request;
     struct comparison c = {0};
     bool exceeded;
     (void)command;
+    if (!options_fit(o))
+        return EXIT_USAGE;
     for (size_t i = 0; i < o->limits.count; i++) // their form, before the work
         if (!comparison_check_limit(o->limits.items[i], &c, &exceeded))
             return EXIT_USAGE;
@@ -43,18 +60,8 @@ static const struct option_spec options[] = {
      .help = "variance of REF's single-sample estimates: also test whether the\n"
              "pictures agree within their noise, by pixels, 8x8 blocks and means;\n"
              "exit 1 if not"},
-    {.name = "samples", .type = OPTION_NUMBER, .offset = AT(request.samples), .argument = "N",
-     .help = "TEST's samples per pixel, for --ztest; 0: what the file says", .def = "0", .min = 0,
-     .max = 1e15},
-    {.name = "ref-samples", .type = OPTION_NUMBER, .offset = AT(request.ref_samples),
-     .argument = "N", .help = "REF's samples per pixel, for --ztest", .def = "32000", .min = 1,
-     .max = 1e15},
     {.name = "map", .type = OPTION_TEXT, .offset = AT(request.map_path), .argument = "OUT.png",
      .help = "write a picture of the difference"},
-    {.name = "map-kind", .type = OPTION_CHOICE, .offset = AT(map), .argument = "KIND",
-     .help = "HDR-FLIP in magma, or (test-ref)/ref with red above and blue\n"
-             "below", .def = "flip",
-     .choices = comparison_map_names},
     {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",
      .help = "exit 1 if METRIC is above X: mean (|ratio - 1|), mse, relmse, flip,\n"
              "ldr-flip, ssim (1 - SSIM), psnr (-PSNR)"},
@@ -70,6 +77,19 @@ static const struct option_spec options[] = {
     {.name = "downsample", .type = OPTION_INT, .offset = AT(request.downsample), .argument = "N",
      .help = "first average NxN boxes: of the larger picture, or of both if equal", .def = "1",
      .min = 1, .max = 4096},
+    OPTION_GROUP(WITH_ZTEST),
+    {.name = "samples", .type = OPTION_NUMBER, .offset = AT(request.samples), .argument = "N",
+     .help = "TEST's samples per pixel; 0: what the file says", .def = "0", .min = 0,
+     .max = 1e15},
+    {.name = "ref-samples", .type = OPTION_NUMBER, .offset = AT(request.ref_samples),
+     .argument = "N", .help = "REF's samples per pixel", .def = "32000", .min = 1,
+     .max = 1e15},
+    OPTION_GROUP(WITH_MAP),
+    {.name = "map-kind", .type = OPTION_CHOICE, .offset = AT(map), .argument = "KIND",
+     .help = "HDR-FLIP in magma, or (test-ref)/ref with red above and blue\n"
+             "below", .def = "flip",
+     .choices = comparison_map_names},
+    OPTION_GROUP("Running"),
     OPTION_THREADS(struct compare_options, request.threads),
     OPTION_JSON(struct compare_options, json),
     OPTION_END,

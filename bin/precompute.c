@@ -14,6 +14,12 @@
 #include "scene_options.h"
 #include "subcommand.h"
 
+// What only some kinds of tensor have options for: headings of --help.
+#define RELIGHT "precompute relight"
+#define EDIT "precompute edit"
+#define EDIT_BOUNCES "precompute edit, all bounces"
+#define EDIT_DIRECT "precompute edit --direct"
+
 #define AT(member) offsetof(struct precompute_values, member)
 
 static const struct option_argument arguments[] = {
@@ -26,15 +32,18 @@ static const struct option_argument arguments[] = {
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output),
      .argument = "T.safetensors", .help = "the tensor to write", .required = true},
-    OPTION_GROUP("precompute relight"),
+    OPTION_GROUP(RELIGHT),
     {.name = "basis", .type = OPTION_TEXT, .offset = AT(basis), .argument = "NAME", .def = "lights",
      .help = "lights: a coefficient per emitter or `group` name;\n"
              "pixels:WxH: per cell of a latitude-longitude grid of directions;\n"
              "sh:N: spherical harmonics to order N;\n"
              "haar:WxH, daub4:WxH: wavelets over the cells"},
-    OPTION_GROUP("precompute edit"),
+    OPTION_GROUP(EDIT),
     {.name = "edit", .type = OPTION_TEXTS, .offset = AT(edit), .argument = "NAME",
      .help = "make the material, or that of the shape, of this id editable, too"},
+    {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
+     .help = "" BUDGET_HELP "; drops what\n--time and --noise would keep to go on"},
+    OPTION_GROUP(EDIT_BOUNCES),
     {.name = "bounces", .type = OPTION_INT, .offset = AT(bounces), .argument = "N", .min = 1,
      .max = EDIT_MOST_BOUNCES, .def = "4",
      .help = "how often light scatters from materials that can be edited"},
@@ -51,9 +60,7 @@ static const struct option_spec options[] = {
      .def = "kept", .help = "at later hops edits change how much a surface reflects, not where to, which\n"
      "is as it was (kept), or each of its terms' for itself, which takes more memory and\n"
      "follows edits from diffuse to sharp (terms), or Lambertian (lambertian)"},
-    {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
-     .help = "" BUDGET_HELP "; drops what\n--time and --noise would keep to go on"},
-    OPTION_GROUP("precompute edit --direct"),
+    OPTION_GROUP(EDIT_DIRECT),
     {.name = "direct", .type = OPTION_FLAG, .offset = AT(direct),
      .help = "direct light only, by triangles of the sky"},
     {.name = "unshadowed", .type = OPTION_FLAG, .offset = AT(unshadowed),
@@ -183,6 +190,29 @@ static bool ranks_fit(const struct precompute_values *v, bool edit) {
     return false;
 }
 
+// Whether all that was asked for has an effect on the kind of tensor.
+static bool options_fit(const struct precompute_values *v, bool edit) {
+    const struct {
+        const char *heading;
+        bool fits;
+    } kinds[] = {{RELIGHT, !edit}, {EDIT, edit}, {EDIT_BOUNCES, edit && !v->direct},
+                 {EDIT_DIRECT, edit && v->direct}};
+    const char *wrong = NULL;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        wrong = kinds[i].fits ? NULL : options_changed(&subcommand_precompute.options,
+                                                       kinds[i].heading, v);
+        if (wrong) {
+            log_error("--%s has no effect on precompute %s%s, only on %s", wrong, v->kind,
+                      edit && v->direct ? " --direct" : "", kinds[i].heading);
+            return false;
+        }
+    }
+    wrong = !v->direct ? NULL : v->integrator ? "integrator" : v->max_depth ? "max-depth" : NULL;
+    if (wrong)
+        log_error("--%s has no effect on precompute edit --direct, which is direct light only", wrong);
+    return !wrong;
+}
+
 static int run(const void *values, const char *command) {
     const struct precompute_values *v = values;
     const bool edit = strcmp(v->kind, "edit") == 0;
@@ -190,6 +220,8 @@ static int run(const void *values, const char *command) {
         log_error("precompute %s: expected relight or edit", v->kind);
         return EXIT_USAGE;
     }
+    if (!options_fit(v, edit))
+        return EXIT_USAGE;
     const bool by_and_by = v->seconds > 0 || v->noise > 0 || v->checkpoint > 0;
     if (precompute_is_progressive(v) && (!edit || (v->direct && by_and_by))) {
         log_error("--samples, --time, --noise, --checkpoint and --resume go with edit, and without "
@@ -197,8 +229,8 @@ static int run(const void *values, const char *command) {
         return EXIT_USAGE;
     }
     double relmse = 0;
-    if (v->budget && (!edit || v->half || v->samples || v->checkpoint > 0 || v->resume)) {
-        log_error("--budget goes with edit, without --half and where nothing is to be gone on with (--samples, "
+    if (v->budget && (v->half || v->samples || v->checkpoint > 0 || v->resume)) {
+        log_error("--budget goes without --half and where nothing is to be gone on with (--samples, "
                   "--checkpoint, --resume keep sums); store those by `relume tensor requantise --budget`");
         return EXIT_USAGE;
     }

@@ -281,3 +281,50 @@ void options_finish(const struct option_table *table, void *values) {
         if (a->repeated)
             mem_free(((struct option_list *)((char *)values + a->offset))->items);
 }
+
+// ---- what was given -----------------------------------------------------------------------------
+
+static bool same_text(const char *a, const char *b) {
+    return a == b || (a && b && strcmp(a, b) == 0);
+}
+
+// Whether two values of the option are alike; no list has a default.
+static bool same_value(const struct option_spec *o, const void *a, const void *b) {
+    switch (o->type) {
+    case OPTION_FLAG: return *(const bool *)a == *(const bool *)b;
+    case OPTION_INT:
+    case OPTION_CHOICE: return *(const int *)a == *(const int *)b;
+    case OPTION_COUNT: return *(const uint64_t *)a == *(const uint64_t *)b;
+    case OPTION_NUMBER:
+    case OPTION_SECONDS: return memcmp(a, b, sizeof(double)) == 0;
+    case OPTION_TEXT: return same_text(*(const char *const *)a, *(const char *const *)b);
+    case OPTION_INTS: return memcmp(a, b, sizeof(int) * (size_t)o->values) == 0;
+    case OPTION_RECTANGLE: return memcmp(a, b, 4 * sizeof(int)) == 0;
+    case OPTION_TEXTS: return ((const struct option_list *)a)->count == 0;
+    case OPTION_HEADING: break;
+    }
+    return true;
+}
+
+static bool is_default(const struct option_spec *o, const void *values) {
+    enum { MOST_VALUES = 16 };
+    int64_t zero[MOST_VALUES] = {0}; // room for any one value
+    struct option_spec alone = *o;
+    alone.offset = 0;
+    if (o->def && o->type != OPTION_TEXTS)
+        parse_value(&alone, o->def, zero);
+    return same_value(o, (const char *)values + o->offset, zero);
+}
+
+const char *options_changed(const struct option_table *table, const char *heading,
+                            const void *values) {
+    bool below = false;
+    for (size_t i = 0; i < option_count(table); i++) {
+        const struct option_spec *o = &table->options[i];
+        if (o->type == OPTION_HEADING)
+            below = strcmp(o->name, heading) == 0;
+        else if (below && !is_default(o, values))
+            return o->name;
+    }
+    return NULL;
+}

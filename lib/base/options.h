@@ -81,5 +81,9 @@ enum options_result options_parse(const struct option_table *table, int argc, ch
                                   void *values);
 void options_finish(const struct option_table *table, void *values);
 
+// The name of an option below the heading whose value is not its default; NULL: there is none.
+const char *options_changed(const struct option_table *table, const char *heading,
+                            const void *values);
+
 // Prints usage, description, arguments, options and examples on standard output.
 void options_help(const struct option_table *table, const char *program, const char *summary);

@@ -122,6 +122,25 @@ static void mistakes_are_named(void) {
     }
 }
 
+// What a subcommand needs to refuse options that have no effect.
+static void changes_are_told(void) {
+    static const char *const cases[][2] = {
+        {"a -f -n 3", ""},           {"a --colour green --seed 0 --real 0", ""},
+        {"a --size 2x2", "size"},    {"a --crop 0,0,1,1", "crop"},
+        {"a --colour red", "colour"}, {"a --seed 4294967296", "seed"},
+        {"a --real -1", "real"},     {"a --time 2m", "time"},
+        {"a --text 0", "text"},      {"a -D x=1", "define"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct values v;
+        CHECK(parse(cases[i][0], &v) == OPTIONS_OK);
+        const char *name = options_changed(&table, "Sizes", &v);
+        CHECK(strcmp(name ? name : "", cases[i][1]) == 0);
+        CHECK(!options_changed(&table, "Other", &v));
+        options_finish(&table, &v);
+    }
+}
+
 static void help_wins(void) {
     struct values v;
     CHECK(parse("--number 3 --help", &v) == OPTIONS_HELP);
@@ -131,6 +150,7 @@ static void help_wins(void) {
 int main(void) {
     values_and_defaults_arrive();
     mistakes_are_named();
+    changes_are_told();
     help_wins();
     return check_result();
 }
