@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "budget.h"
+#include "replay/export.h"
 #include "subcommand.h"
 #include "transport/tensor_remake.h"
 
@@ -20,14 +21,15 @@ struct values {
 static const struct option_argument arguments[] = {
     {"VERB", AT(verb), "info: what it holds; check: whether all of it is sound;\n"
      "merge: the mean of tensors with different seeds; crop: a part of the\n"
-     "picture; requantise: other storage (--half: 16 bits; --budget; else 32)", false, false},
+     "picture; requantise: other storage (--half: 16 bits; --budget; else 32);\n"
+     "export: of relighting, a layer of an EXR for each coefficient", false, false},
     {"T", AT(files), "tensors", false, true},
     {.name = NULL},
 };
 
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output),
-     .argument = "OUT.safetensors", .help = "the tensor to write"},
+     .argument = "OUT.safetensors", .help = "the tensor to write; export: OUT.exr"},
     {.name = "crop", .type = OPTION_RECTANGLE, .offset = AT(crop), .argument = "X0,Y0,X1,Y1",
      .min = 0, .max = 65536, .help = "these pixels only; X1 and Y1 are just past the last"},
     {.name = "half", .type = OPTION_FLAG, .offset = AT(half),
@@ -110,6 +112,14 @@ static bool remake(const struct values *v, const char *command) {
     return true;
 }
 
+static bool export(const struct values *v, const char *command) {
+    struct tensor_file *f = tensor_open(v->files.items[0]);
+    const bool good = f && export_coefficients(tensor_get(f), v->files.items[0], v->output, command,
+                                               RELUME_VERSION);
+    tensor_close(f);
+    return good;
+}
+
 static int store(const struct values *v, const char *command) {
     struct budget_run b = {.tensor = v->files.items[0], .output = v->output, .command = command,
                            .threads = v->threads, .no_halves = v->no_halves, .quiet = v->quiet,
@@ -119,38 +129,54 @@ static int store(const struct values *v, const char *command) {
     return budget_run(&b) ? EXIT_DONE : EXIT_FAILED;
 }
 
+enum verb { INFO, CHECK, MERGE, CROP, REQUANTISE, EXPORT };
+static const char *const verbs[] = {"info", "check", "merge", "crop", "requantise", "export", NULL};
+
+// NULL, or what is wrong with the options together.
+static const char *misused(const struct values *v, enum verb verb) {
+    const bool changes = v->half || v->drop_zeros || v->crop[2];
+    if (verb <= CHECK && (v->output || changes || v->budget || v->no_halves))
+        return "writes no tensor; expected no -o and nothing about storage or --crop";
+    if (verb >= MERGE && !v->output)
+        return "expected -o OUT";
+    if (verb == MERGE && v->files.count < 2)
+        return "expected two tensors or more";
+    if (verb > MERGE && v->files.count != 1)
+        return "expected one tensor";
+    if (verb == CROP && !v->crop[2])
+        return "expected --crop";
+    if (verb == EXPORT && (changes || v->budget || v->no_halves))
+        return "writes coefficients as they are; expected nothing about storage or --crop";
+    if ((v->budget || v->no_halves) && (!v->budget || verb != REQUANTISE || changes))
+        return "--budget goes with requantise, alone; --no-halves with --budget";
+    return NULL;
+}
+
 static int run(const void *values, const char *command) {
-    static const char *const verbs[] = {"info", "check", "merge", "crop", "requantise", NULL};
     const struct values *v = values;
     int verb = 0;
     while (verbs[verb] && strcmp(verbs[verb], v->verb) != 0)
         verb++;
     if (!verbs[verb]) {
-        log_error("tensor %s: expected info, check, merge, crop or requantise", v->verb);
+        log_error("tensor %s: expected info, check, merge, crop, requantise or export", v->verb);
         return EXIT_USAGE;
     }
-    if (verb >= 2 && (!v->output || (verb == 2 ? v->files.count < 2 : v->files.count != 1) ||
-                      (verb == 3 && !v->crop[2]))) {
-        log_error("tensor %s: expected -o OUT, %s", v->verb,
-                  verb == 2 ? "and two tensors or more" : verb == 3 ? "one tensor, and --crop"
-                                                                    : "and one tensor");
-        return EXIT_USAGE;
-    }
-    if ((v->budget || v->no_halves) &&
-        (!v->budget || verb != 4 || v->half || v->drop_zeros || v->crop[2])) {
-        log_error("tensor %s: --budget goes with requantise, alone; --no-halves with --budget", v->verb);
+    const char *wrong = misused(v, (enum verb)verb);
+    if (wrong) {
+        log_error("tensor %s: %s", v->verb, wrong);
         return EXIT_USAGE;
     }
     if (v->quiet)
         log_set_level(LOG_WARN);
     if (v->budget)
         return store(v, command);
-    const bool done = verb == 0 ? inform(v) : verb == 1 ? check(v) : remake(v, command);
+    const bool done = verb == INFO ? inform(v) : verb == CHECK ? check(v)
+                      : verb == EXPORT ? export(v, command) : remake(v, command);
     return done ? EXIT_DONE : EXIT_FAILED;
 }
 
 const struct subcommand subcommand_tensor = {
-    .entry = {.name = "tensor", .help = "inspect, check, merge, crop and requantise tensors",
+    .entry = {.name = "tensor", .help = "inspect, check, merge, crop, requantise and export tensors",
               .size = sizeof(struct values)},
     .options = {.options = options, .arguments = arguments,
                 .description = "Merging gives the exact mean of tensors of one scene that were "
@@ -163,6 +189,7 @@ const struct subcommand subcommand_tensor = {
                             "relmse=1e-4\n"
                             "  relume tensor crop tea.safetensors -o part.safetensors --crop 2,2,9,8\n"
                             "  relume tensor merge tea.safetensors more.safetensors -o all.safetensors "
-                            "--drop-zeros\n"},
+                            "--drop-zeros\n"
+                            "  relume tensor export lights.safetensors -o lights.exr\n"},
     .run = run,
 };
