@@ -11,6 +11,7 @@
 #include "mesh/mesh.h"
 #include "scene_options.h"
 #include "subcommand.h"
+#include "transport/tensor_remake.h"
 
 struct info_options {
     const char *file;
@@ -115,6 +116,14 @@ static bool is_mesh(const char *extension) {
     return false;
 }
 
+static bool tell_tensor(const char *path, struct json *out) {
+    struct tensor_file *f = tensor_open(path);
+    if (f)
+        tensor_describe(tensor_get(f), out);
+    tensor_close(f);
+    return f != NULL;
+}
+
 static int run(const void *values, const char *command) {
     const struct info_options *o = values;
     char extension[16];
@@ -127,6 +136,8 @@ static int run(const void *values, const char *command) {
         code = tell_scene(o, out);
     else if (is_mesh(extension))
         code = tell_mesh(o->file, out) ? EXIT_DONE : EXIT_FAILED;
+    else if (strcmp(extension, "safetensors") == 0)
+        code = tell_tensor(o->file, out) ? EXIT_DONE : EXIT_FAILED;
     else
         code = tell_image(o->file, out) ? EXIT_DONE : EXIT_FAILED;
     if (code == EXIT_DONE && o->json)
@@ -148,7 +159,8 @@ static const struct option_spec options[] = {
 
 static const struct option_argument arguments[] = {
     {.name = "FILE", .offset = AT(file),
-     .help = "a scene (.xml, .gltf, .glb), a mesh (OBJ, PLY, ...) or a picture (EXR, PNG, HDR, JPEG, ...)"},
+     .help = "a scene (.xml, .pbrt, .gltf, .glb), a mesh (OBJ, PLY, ...), a picture (EXR, PNG, HDR, JPEG, ...)\n"
+             "or a tensor (.safetensors)"},
     {.name = NULL},
 };
 

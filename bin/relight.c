@@ -33,7 +33,7 @@ static const struct option_spec options[] = {
     {.name = "env", .letter = 'e', .type = OPTION_TEXT, .offset = AT(environment), .argument = "FILE",
      .help = "environment, latitude-longitude, in place of the scene's own"},
     {.name = "rotate", .type = OPTION_NUMBER, .offset = AT(rotate), .argument = "DEG", .min = -1e6,
-     .max = 1e6, .def = "0", .help = "turn it about +y, from +z towards +x"},
+     .max = 1e6, .def = "0", .help = "turn the environment about +y, from +z towards +x"},
     {.name = "light", .letter = 'l', .type = OPTION_TEXTS, .offset = AT(lights),
      .argument = "NAME=R,G,B", .help = "factors of a light or group (basis lights); NAME=X for all three"},
     {.name = "terms", .type = OPTION_INT, .offset = AT(terms), .argument = "N", .min = 0,
@@ -41,9 +41,11 @@ static const struct option_spec options[] = {
      .help = "keep the N largest terms of the lighting; 0: all. With --frames: change N\n"
              "terms a frame, those that matter most"},
     {.name = "frames", .type = OPTION_INT, .offset = AT(frames), .argument = "N", .min = 0,
-     .max = 9999, .def = "0", .help = "pictures OUT.0001.exr to OUT.N.exr of the environment as it turns"},
+     .max = 9999, .def = "0",
+     .help = "pictures OUT.0001.exr to OUT.N.exr of the environment as it turns;\n"
+             "their seconds are told by each"},
     {.name = "turn", .type = OPTION_NUMBER, .offset = AT(turn), .argument = "DEG", .min = -360,
-     .max = 360, .def = "5", .help = "from each of them to the next"},
+     .max = 360, .help = "from each of them to the next; 0: 5", .def = "0"},
     {.name = "save-scene", .type = OPTION_TEXT, .offset = AT(save), .argument = "OUT.xml",
      .help = "write the scene with this lighting"},
     {.name = "scene", .type = OPTION_TEXT, .offset = AT(scene), .argument = "SCENE.xml",
@@ -101,7 +103,7 @@ static bool relight(const struct values *v, const char *command, const struct te
 static bool save(const struct values *v, const struct tensor *t, const struct relight_lighting *l) {
     const char *scene = v->scene ? v->scene : json_text(json_get(t->meta, "scene"));
     if (scene)
-        return save_lights(l, scene, v->save);
+        return save_lights(l, t->meta, scene, v->save);
     log_error("%s: does not tell its scene; expected --scene", v->tensor);
     return false;
 }
@@ -113,8 +115,9 @@ static bool relight_file(const struct values *v, const char *command, const stru
         .light_count = v->lights.count, .terms = v->frames ? 0 : (uint32_t)v->terms};
     const struct relight_frames frames = {
         .tensor = t, .path = v->tensor, .output = v->common.output, .command = command,
-        .count = v->frames, .terms = (uint32_t)v->terms, .turn = v->turn,
-        .no_device = v->common.no_device, .threads = v->common.threads};
+        .count = v->frames, .terms = (uint32_t)v->terms, .turn = v->turn != 0 ? v->turn : 5,
+        .no_device = v->common.no_device, .threads = v->common.threads, .quiet = v->common.quiet,
+        .json = v->common.json};
     const size_t count = t->block_count ? t->blocks[0].coefficients : 0;
     float *weights = mem_array(3 * count, sizeof *weights);
     bool done = relight_weights(t, v->tensor, &lighting, weights);
@@ -130,10 +133,24 @@ static bool relight_file(const struct values *v, const char *command, const stru
     return done;
 }
 
+// NULL, or what is wrong with the options together.
+static const char *misused(const struct values *v) {
+    const bool frames = v->frames > 0;
+    if (!v->common.output && !v->save)
+        return "expected -o OUT.exr or --save-scene OUT.xml";
+    if (!v->common.output && (frames || v->common.time || v->common.variance))
+        return "--frames, --time and --variance go with -o OUT.exr";
+    if (!frames && v->turn != 0)
+        return "--turn goes with --frames; --rotate turns a single picture";
+    if (frames && (v->common.time || v->common.variance || v->save))
+        return "--time, --variance and --save-scene are of one picture, without --frames";
+    return v->scene && !v->save ? "--scene goes with --save-scene" : NULL;
+}
+
 static int run(const void *values, const char *command) {
     const struct values *v = values;
-    if ((!v->common.output && !v->save) || (v->frames && (!v->common.output || !v->environment))) {
-        log_error("relight: expected -o OUT.exr or --save-scene OUT.xml; with --frames, -o and --env");
+    if (misused(v)) {
+        log_error("relight: %s", misused(v));
         return EXIT_USAGE;
     }
     if (v->common.quiet)

@@ -10,9 +10,9 @@ struct relight_frames {
     int count;
     uint32_t terms; // that a frame may change (replay/follow.h); 0: all
     double turn;    // degrees from each frame to the next
-    bool no_device;
+    bool no_device, quiet, json;
     int threads;
 };
 
-// false after an error message.
+// Tells of each what it took, as JSON on standard output if asked for. false after an error message.
 bool relight_frames_write(const struct relight_frames *f, const struct relight_lighting *first);

@@ -6,6 +6,7 @@
 
 #include "base/thread.h"
 #include "bsdf/equivalent_albedo.h"
+#include "driver/origin.h"
 
 // ---- albedos ------------------------------------------------------------------------------------
 
@@ -88,8 +89,7 @@ struct json *polynomial_describe(const struct polynomial *p, const struct polyno
     json_add_text(meta, "kind", "edit");
     json_add_text(meta, "command", o->command);
     json_add_text(meta, "program", o->version);
-    add_hash(meta, "scene hash", p->job.scene->hash);
-    json_add_text(meta, "scene", o->job.scene);
+    origin_add(meta, &p->job, &o->job);
     json_add_count(meta, "samples", end - first);
     json_add_count(meta, "seed", o->job.seed);
     json_add_text(meta, "colour space", "linear Rec.709");

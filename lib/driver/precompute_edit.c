@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/precompute_edit.h"
 
-#include <inttypes.h>
 #include <stdatomic.h>
-#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include "driver/edit_fixed.h"
 #include "driver/edit_pixels.h"
 #include "driver/edit_sky.h"
+#include "driver/origin.h"
 
 enum { DEFAULT_POSITIONS = 16, TRIAL_REGIONS = 6, DRY_REGIONS = 24 };
 
@@ -307,14 +306,11 @@ static void choose_packets(struct precompute *p) {
 static struct json *describe(const struct precompute *p) {
     const struct edit_options *o = p->options;
     struct json *meta = json_new_object();
-    char hash[32];
     uint32_t most = 1;
     json_add_text(meta, "kind", "edit");
     json_add_text(meta, "command", o->command);
     json_add_text(meta, "program", o->version);
-    json_add_text(meta, "scene", o->job.scene);
-    snprintf(hash, sizeof hash, "%016" PRIx64, p->job.scene->hash);
-    json_add_text(meta, "scene hash", hash);
+    origin_add(meta, &p->job, &o->job);
     json_add_text(meta, "colour space", "linear Rec.709");
     json_add_count(meta, "samples", p->job.render.tracer.spp);
     json_add_count(meta, "seed", o->job.seed);

@@ -3,13 +3,13 @@
 // from everywhere, so that every direction is sampled whatever the old ones looked like.
 #include "driver/precompute_relight.h"
 
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/thread.h"
 #include "curve/wavelet.h"
+#include "driver/origin.h"
 #include "sink/lighting.h"
 #include "sink/tensor_sums.h"
 
@@ -143,13 +143,16 @@ static bool open_jobs(const struct relight_options *o, struct basis *b, struct j
 static struct json *describe(const struct relight_options *o, const struct basis *b,
                              const struct job *job, uint32_t samples) {
     struct json *meta = json_new_object(), *basis;
-    char hash[32];
+    const struct receiver *receiver = &o->job.receiver;
     json_add_text(meta, "kind", "relight");
     json_add_text(meta, "command", o->command);
     json_add_text(meta, "program", o->version);
-    snprintf(hash, sizeof hash, "%016" PRIx64, job->scene->hash);
-    json_add_text(meta, "scene hash", hash);
-    json_add_text(meta, "scene", o->job.scene);
+    origin_add(meta, job, &o->job);
+    json_add_text(meta, "integrator", job->scene->integrator->type->name);
+    json_add_count(meta, "max depth", o->job.max_depth); // 0: the scene's
+    if (receiver->texels || receiver->vertices)
+        json_add_text(meta, receiver->texels ? "texels" : "vertices",
+                      receiver->texels ? receiver->texels : receiver->vertices);
     json_add_count(meta, "samples", samples);
     json_add_count(meta, "seed", o->job.seed);
     json_add_text(meta, "colour space", "linear Rec.709");

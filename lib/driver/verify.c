@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/verify.h"
 
-#include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/log.h"
 #include "base/thread.h"
 #include "driver/edit_plan.h"
+#include "driver/origin.h"
 #include "math/hash.h"
 #include "math/repeats.h"
 #include "replay/edit_script.h"
@@ -76,17 +75,6 @@ static void convert(struct scene *s, void *user) {
     }
 }
 
-static bool check_hash(const struct verify *v) {
-    const char *hash = json_text(json_get(v->tensor->meta, "scene hash"));
-    char own[32];
-    snprintf(own, sizeof own, "%016" PRIx64, v->job.scene->hash);
-    if (hash && strcmp(hash, own) == 0)
-        return true;
-    log_error("%s: is not the scene that %s was made of (its hash is %s, expected %s)",
-              v->options->job.scene, v->options->tensor, own, hash ? hash : "one");
-    return false;
-}
-
 // The edited forms go into the scene's materials.
 static bool edit_materials(struct verify *v) {
     const struct edit_tensor *e = edit_objects(v->edit);
@@ -132,7 +120,9 @@ static bool open_scene(struct verify *v) {
     o.edit_user = &c;
     v->opened = job_open(&v->job, &o);
     v->result->bounces = (uint32_t)bounces;
-    return v->opened && !c.failed && check_hash(v) && edit_materials(v);
+    return v->opened && !c.failed &&
+           origin_agrees(v->tensor->meta, v->options->tensor, &v->job, &v->options->job) &&
+           edit_materials(v);
 }
 
 // ---- blocks -------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@
 
 struct relight_lighting {
     const char *environment;    // picture of an environment, latitude-longitude; NULL: the scene's own
-    double rotate;              // degrees about +y, from +z towards +x
+    double rotate;              // of either, degrees about +y, from +z towards +x
     const char *const *lights;  // "NAME=R,G,B" or "NAME=X": factors of light groups
     size_t light_count;
     uint32_t terms;             // keep so many largest coefficients of wavelets; 0: all

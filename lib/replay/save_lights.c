@@ -21,6 +21,7 @@ static const struct {
     {"point", "intensity", "1"},     {"spot", "intensity", "1"},
     {"ies", "intensity", "1"},       {"projector", "irradiance", "1"},
     {"directional", "irradiance", "1"}, {"envmap", "scale", "1"},
+    {"sunsky", "sky_scale", "1"},    {"sunsky", "sun_scale", "1"},
     {NULL, NULL, NULL},
 };
 
@@ -74,18 +75,20 @@ static bool multiply(struct scene_copy *c, struct xml_node *emitter, struct xml_
 }
 
 static bool scale_emitter(struct scene_copy *c, struct xml_node *emitter, const double factor[3]) {
-    int i = 0;
-    while (emissions[i].type && !is(xml_get(emitter, "type"), emissions[i].type))
-        i++;
-    if (!emissions[i].type)
-        return refuse(emitter, "it is not known how");
-    struct xml_node *value = parameter(emitter, emissions[i].name);
-    if (!value) {
-        const bool scale = is(emissions[i].name, "scale");
-        scene_copy_add(c, emitter, scale ? "float" : "rgb", emissions[i].name, emissions[i].value);
-        value = emitter->last;
+    bool known = false, good = true;
+    for (int i = 0; emissions[i].type && good; i++) {
+        if (!is(xml_get(emitter, "type"), emissions[i].type))
+            continue;
+        known = true;
+        struct xml_node *value = parameter(emitter, emissions[i].name);
+        if (!value) {
+            const bool number = strstr(emissions[i].name, "scale") != NULL;
+            scene_copy_add(c, emitter, number ? "float" : "rgb", emissions[i].name, emissions[i].value);
+            value = emitter->last;
+        }
+        good = multiply(c, emitter, value, factor);
     }
-    return multiply(c, emitter, value, factor);
+    return known ? good : refuse(emitter, "it is not known how");
 }
 
 // Whether an emitter is of the name that the tensor knows it by.
@@ -125,18 +128,38 @@ static bool scale_light(struct scene_copy *c, const char *text) {
 
 // ---- environments -------------------------------------------------------------------------------
 
+static bool is_environment(const struct xml_node *node) {
+    const char *type = xml_get(node, "type");
+    return is(node->tag, "emitter") &&
+           (is(type, "envmap") || is(type, "constant") || is(type, "sunsky"));
+}
+
 static void remove_environments(struct xml_node *root) {
     struct xml_node *old = root->first;
     root->first = root->last = NULL;
     while (old) {
         struct xml_node *next = old->next;
-        const char *type = xml_get(old, "type");
         old->next = NULL;
-        if (!is(old->tag, "emitter") ||
-            !(is(type, "envmap") || is(type, "constant") || is(type, "sunsky")))
+        if (!is_environment(old))
             xml_append(root, old);
         old = next;
     }
+}
+
+// Turns an emitter after all else that places it.
+static void turn(struct scene_copy *c, struct xml_node *emitter, double degrees) {
+    struct xml_node *place = parameter(emitter, "to_world");
+    if (!place)
+        place = parameter(emitter, "toWorld"); // version 0.5
+    if (!place) {
+        place = xml_new("transform", c->root->at, &c->arena);
+        xml_set(place, "name", "to_world", &c->arena);
+        xml_append(emitter, place);
+    }
+    struct xml_node *rotate = xml_new("rotate", c->root->at, &c->arena);
+    xml_set(rotate, "y", "1", &c->arena);
+    xml_set(rotate, "angle", arena_printf(&c->arena, "%.9g", degrees), &c->arena);
+    xml_append(place, rotate);
 }
 
 static bool replace_environment(struct scene_copy *c, const struct relight_lighting *l) {
@@ -149,23 +172,33 @@ static bool replace_environment(struct scene_copy *c, const struct relight_light
     struct xml_node *emitter = xml_new("emitter", c->root->at, &c->arena);
     xml_set(emitter, "type", "envmap", &c->arena);
     scene_copy_add(c, emitter, "string", "filename", arena_strdup(&c->arena, whole));
-    struct xml_node *turn = xml_new("transform", c->root->at, &c->arena);
-    xml_set(turn, "name", "to_world", &c->arena);
-    struct xml_node *rotate = xml_new("rotate", c->root->at, &c->arena);
-    xml_set(rotate, "y", "1", &c->arena);
-    xml_set(rotate, "angle", arena_printf(&c->arena, "%.9g", l->rotate), &c->arena);
-    xml_append(turn, rotate);
-    xml_append(emitter, turn);
+    turn(c, emitter, l->rotate);
     xml_append(c->root, emitter);
     free(whole);
     return true;
 }
 
-bool save_lights(const struct relight_lighting *l, const char *scene, const char *output) {
+static bool turn_environments(struct scene_copy *c, double degrees) {
+    bool found = false;
+    for (struct xml_node *n = c->root->first; n; n = n->next)
+        if (is_environment(n)) {
+            found = true;
+            if (!is(xml_get(n, "type"), "constant"))
+                turn(c, n, degrees);
+        }
+    if (!found)
+        log_error("%s: has no environment in the file itself that could be turned", c->scene);
+    return found;
+}
+
+bool save_lights(const struct relight_lighting *l, const struct json *meta, const char *scene,
+                 const char *output) {
     struct scene_copy c;
-    bool good = scene_copy_init(&c, scene, output);
+    bool good = scene_copy_init(&c, scene, output, meta);
     if (good && l->environment)
         good = replace_environment(&c, l);
+    else if (good && l->rotate != 0)
+        good = turn_environments(&c, l->rotate);
     for (size_t i = 0; i < l->light_count && good; i++)
         good = scale_light(&c, l->lights[i]);
     good = good && scene_copy_write(&c);

@@ -3,10 +3,12 @@
 // lights.
 //
 // Factors of lights change the numbers of their emitters: radiance, intensity, irradiance, scale; so
-// must those of a `group` name. Another environment takes the place of all that were there.
+// must those of a `group` name. Another environment takes the place of all that were there; the scene's
+// own is turned where it is.
 #pragma once
 
 #include "replay/relight.h"
 
-// scene: the file that the tensor was made of. false after an error message.
-bool save_lights(const struct relight_lighting *l, const char *scene, const char *output);
+// scene: the file that the tensor of this metadata was made of. false after an error message.
+bool save_lights(const struct relight_lighting *l, const struct json *meta, const char *scene,
+                 const char *output);

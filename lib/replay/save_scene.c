@@ -168,7 +168,7 @@ static bool save_object(struct saving *s, const struct edited_object *o) {
 
 bool save_scene(const struct edit_tensor *e, const char *scene, const char *output) {
     struct saving s = {.objects = e};
-    bool good = scene_copy_init(&s.copy, scene, output);
+    bool good = scene_copy_init(&s.copy, scene, output, e->tensor->meta);
     for (uint32_t i = 0; i < e->object_count && good; i++)
         good = save_object(&s, &e->objects[i]);
     good = good && scene_copy_write(&s.copy);

@@ -4,15 +4,59 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "base/file.h"
 
-bool scene_copy_init(struct scene_copy *c, const char *scene, const char *output) {
+// Only Mitsuba's XML is written.
+static bool is_xml(const struct scene_copy *c) {
+    const char *point = strrchr(c->scene, '.');
+    if (point && strcasecmp(point, ".xml") == 0)
+        return true;
+    log_error("%s: --save-scene changes Mitsuba XML scenes, and this is none", c->scene);
+    return false;
+}
+
+// The scene itself is never written over: the tensor could not be checked against it any more.
+static bool is_another(const struct scene_copy *c) {
+    char *from = realpath(c->scene, NULL), *to = realpath(c->output, NULL);
+    const bool same = from && to && strcmp(from, to) == 0;
+    free(from);
+    free(to);
+    if (same)
+        log_error("%s: is the tensor's own scene; expected another name for --save-scene", c->output);
+    return !same;
+}
+
+static void put_first(struct xml_node *root, struct xml_node *node) {
+    node->next = root->first;
+    root->first = node;
+    if (!root->last)
+        root->last = node;
+}
+
+// What comes first gives a parameter its value, whatever the file says below.
+static void define(struct scene_copy *c, const struct json *defines) {
+    for (size_t i = 0; i < json_count(defines); i++) {
+        const char *name = json_key(defines, i), *value = json_text(json_get(defines, name));
+        struct xml_node *node = xml_new("default", c->root->at, &c->arena);
+        xml_set(node, "name", arena_strdup(&c->arena, name), &c->arena);
+        xml_set(node, "value", arena_strdup(&c->arena, value ? value : ""), &c->arena);
+        put_first(c->root, node);
+    }
+}
+
+bool scene_copy_init(struct scene_copy *c, const char *scene, const char *output,
+                     const struct json *meta) {
     size_t size, nodes = 0;
     *c = (struct scene_copy){.scene = scene, .output = output};
+    if (!is_xml(c) || !is_another(c))
+        return false;
     char *text = file_read(scene, XML_MOST_BYTES, &size);
     c->root = text ? xml_parse(text, size, scene, XML_TEXT_REPORTED, &c->arena, &nodes) : NULL;
     mem_free(text);
+    if (c->root)
+        define(c, json_get(meta, "defines"));
     return c->root != NULL;
 }
 
@@ -83,8 +127,7 @@ static bool add_folder(struct scene_copy *s) {
     }
     struct xml_node *path = xml_new("path", s->root->at, &s->arena);
     xml_set(path, "value", arena_strdup(&s->arena, whole), &s->arena);
-    path->next = s->root->first;
-    s->root->first = path;
+    put_first(s->root, path);
     free(whole);
     return true;
 }

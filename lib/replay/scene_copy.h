@@ -3,6 +3,7 @@
 // write back. Files that the scene refers to are found where it was.
 #pragma once
 
+#include "base/json.h"
 #include "base/xml.h"
 
 struct scene_copy {
@@ -11,8 +12,10 @@ struct scene_copy {
     struct arena arena;
 };
 
-// Reads a scene. false after an error message; scene_copy_finish either way.
-bool scene_copy_init(struct scene_copy *c, const char *scene, const char *output);
+// Reads a scene and gives its parameters the values that a tensor's metadata tell ("defines"). false
+// after an error message; scene_copy_finish either way.
+bool scene_copy_init(struct scene_copy *c, const char *scene, const char *output,
+                     const struct json *meta);
 void scene_copy_finish(struct scene_copy *c);
 
 // The element of that tag and id, wherever it is; NULL: none.

@@ -31,6 +31,23 @@ static void describe_block(const struct tensor_block *b, struct json *j) {
     json_add_count(j, "bytes", (int64_t)tensor_bytes(b));
 }
 
+// What a relighting tensor's coefficients are of.
+static void describe_basis(const struct json *basis, struct json *out) {
+    struct json *j = json_add_object(out, "basis"), *names;
+    json_add_text(j, "type", json_text(json_get(basis, "type")));
+    static const char *const sizes[] = {"width", "height", "order"};
+    int64_t size;
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        if (json_read_integer(json_get(basis, sizes[i]), &size))
+            json_add_count(j, sizes[i], size);
+    const struct json *lights = json_get(basis, "lights");
+    if (!lights)
+        return;
+    names = json_add_array(j, "lights");
+    for (size_t i = 0; i < json_count(lights); i++)
+        json_append_text(names, json_text(json_at(lights, i)));
+}
+
 void tensor_describe(const struct tensor *t, struct json *out) {
     json_add_count(out, "width", t->width);
     json_add_count(out, "height", t->height);
@@ -43,6 +60,8 @@ void tensor_describe(const struct tensor *t, struct json *out) {
                  json_read_number(json_get(t->meta, key), &number))
             json_add_number(out, key, number);
     }
+    if (json_get(t->meta, "basis"))
+        describe_basis(json_get(t->meta, "basis"), out);
     json_add_bool(out, "fixed", t->fixed != NULL);
     struct json *blocks = json_add_array(out, "blocks");
     for (uint32_t i = 0; i < t->block_count; i++)
