@@ -5,6 +5,7 @@
 #include "base/log.h"
 #include "base/mem.h"
 #include "edit_picture.h"
+#include "replay/edit_change.h"
 #include "replay/edit_list.h"
 #include "replay/save_scene.h"
 #include "replay_report.h"
@@ -29,7 +30,8 @@ static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(common.output),
      .argument = "OUT.exr", .help = "the picture to write"},
     {.name = "list", .type = OPTION_FLAG, .offset = AT(list),
-     .help = "print what can be edited: objects, terms, numbers and curves"},
+     .help = "print what can be edited: objects, terms, numbers and curves, as the changes\n"
+             "leave them; no picture"},
     {.name = "set", .letter = 's', .type = OPTION_TEXTS, .offset = AT(changes[EDIT_SET]),
      .argument = "OBJECT.PARAM=V", .help = "a number of an object's model: its curves are made anew.\n"
      "OBJECT.TERM.scale=V is a term's factor. V: a number or R,G,B"},
@@ -61,7 +63,10 @@ static void more_help(void) {
 
 // ---- changes --------------------------------------------------------------------------------------
 
-static bool change_all(const struct values *v, struct edit *e) {
+// One change of the command line.
+typedef bool change_fn(void *edited, enum edit_kind kind, const char *text, const char *at);
+
+static bool change_all(const struct values *v, change_fn *change, void *edited) {
     static const struct {
         enum edit_kind kind;
         const char *at;
@@ -69,8 +74,17 @@ static bool change_all(const struct values *v, struct edit *e) {
     bool good = true;
     for (int k = 0; k < 3; k++)
         for (size_t i = 0; i < v->changes[order[k].kind].count && good; i++)
-            good = edit_change(e, order[k].kind, v->changes[order[k].kind].items[i], order[k].at);
+            good = change(edited, order[k].kind, v->changes[order[k].kind].items[i], order[k].at);
     return good;
+}
+
+static bool change_picture(void *edited, enum edit_kind kind, const char *text, const char *at) {
+    return edit_change(edited, kind, text, at);
+}
+
+static bool change_objects(void *edited, enum edit_kind kind, const char *text, const char *at) {
+    struct edit_touch touch;
+    return edit_apply(edited, kind, text, at, &touch);
 }
 
 static bool save(const struct values *v, const struct edit_tensor *e) {
@@ -90,7 +104,7 @@ static bool evaluate(const struct values *v, struct edit_session *s,
     struct edit *e = edit_create(s->tensor, v->tensor, &o);
     float *frame = mem_array(3 * plane, sizeof *frame), *variance = mem_array(plane, sizeof *frame);
     struct replay_timing timing = {0};
-    bool good = e && change_all(v, e) &&
+    bool good = e && change_all(v, change_picture, e) &&
                 edit_script_play(script, e, v->script, frame, edit_session_frame, s);
     good = good && (!v->common.output || edit_picture(&v->common, s, e, frame, &timing, variance));
     good = good && (!v->save || save(v, edit_objects(e)));
@@ -104,16 +118,18 @@ static bool evaluate(const struct values *v, struct edit_session *s,
 
 // ---- all ----------------------------------------------------------------------------------------
 
-static bool list(const struct values *v, const struct tensor *t, struct json *out) {
+static bool list(const struct values *v, const struct edit_script *script, const struct tensor *t,
+                 struct json *out) {
     struct edit_tensor e;
     if (!edit_tensor_init(&e, t, v->tensor))
         return false;
-    if (v->common.json)
+    const bool good = change_all(v, change_objects, &e) && edit_script_apply(script, &e, v->script);
+    if (good && v->common.json)
         edit_list(&e, out);
-    else
+    else if (good)
         edit_list_print(&e);
     edit_tensor_finish(&e);
-    return true;
+    return good;
 }
 
 static bool edit_file(const struct values *v, const char *command, const struct tensor *t) {
@@ -121,8 +137,8 @@ static bool edit_file(const struct values *v, const char *command, const struct 
     struct edit_session s = {v->script, v->common.output, command, t, v->common.quiet,
                              v->common.json, json_new_array()};
     struct edit_script script = {0};
-    bool good = v->list ? list(v, t, out) : !v->script || edit_script_read(&script, v->script);
-    good = good && (v->list || evaluate(v, &s, &script, out));
+    bool good = !v->script || edit_script_read(&script, v->script);
+    good = good && (v->list ? list(v, &script, t, out) : evaluate(v, &s, &script, out));
     for (size_t i = 0; i < json_count(s.frames) && good && v->common.json; i++)
         json_print(json_at(s.frames, i), false);
     if (good && v->common.json)
@@ -133,10 +149,23 @@ static bool edit_file(const struct values *v, const char *command, const struct 
     return good;
 }
 
+// NULL, or what is wrong with the options together.
+static const char *misused(const struct values *v) {
+    if (!v->list && !v->script && !v->common.output && !v->save)
+        return "expected --list, -o OUT.exr, --script EDITS.json or --save-scene OUT.xml";
+    if (v->list && (v->common.output || v->save))
+        return "--list makes no picture and no scene; expected no -o and no --save-scene beside it";
+    if (!v->common.output && (v->common.time || v->common.variance))
+        return "--time and --variance go with -o OUT.exr";
+    if (v->terms && !v->script)
+        return "--terms goes with --script EDITS.json";
+    return v->scene && !v->save ? "--scene goes with --save-scene" : NULL;
+}
+
 static int run(const void *values, const char *command) {
     const struct values *v = values;
-    if (!v->list && !v->script && !v->common.output && !v->save) {
-        log_error("edit: expected --list, -o OUT.exr, --script EDITS.json or --save-scene OUT.xml");
+    if (misused(v)) {
+        log_error("edit: %s", misused(v));
         return EXIT_USAGE;
     }
     if (v->common.quiet)

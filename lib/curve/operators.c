@@ -126,9 +126,10 @@ static bool parse_one(const char *text, size_t length, struct curve_operator *o,
         v[n++] = strtod(p + 1, &end);
         p = end > p + 1 ? end : text;
     }
-    if (p != text + length || n < 5) {
-        log_error("%s: \"%.*s\" is no operator, expected translate-x|translate-y|amplify-x|"
-                  "amplify-y,a,b,c,d,magnitude[,base]", at, (int)length, text);
+    const bool shift = kind == OPERATOR_TRANSLATE_X || kind == OPERATOR_TRANSLATE_Y;
+    if (p != text + length || n < 5 || (shift && n > 5)) {
+        log_error("%s: \"%.*s\" is no operator, expected translate-x|translate-y,a,b,c,d,way or "
+                  "amplify-x|amplify-y,a,b,c,d,factor[,base]", at, (int)length, text);
         return false;
     }
     o->kind = (enum operator_kind)kind;

@@ -164,6 +164,8 @@ static bool operate(struct edit_tensor *e, const char *text, const char *at,
     if (!find_place(e, text, colon, at, &p) ||
         !operators_parse(colon + 1, operators, MOST_OPERATORS, &count, at))
         return false;
+    if (count == 0)
+        return fail(at, "expected operators behind the colon, found", text);
     struct curve *own = p.object->curve[p.curve];
     const size_t bytes = (size_t)own->channels * own->basis.count * sizeof *own->values;
     double *before = mem_array(bytes, 1);

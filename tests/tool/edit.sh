@@ -69,6 +69,15 @@ for key in product_seconds frame_seconds gigabytes_per_second machine_gigabytes_
 done
 
 expect 2 "$relume" edit t.safetensors
+for wrong in "--list -o out.exr" "--script session.json --time" "-o out.exr --terms 3" "-o out.exr --scene a.xml"; do
+    # shellcheck disable=SC2086 # words
+    expect 2 "$relume" edit t.safetensors $wrong
+done
+expect 0 "$relume" edit t.safetensors --list --set cup.exponent=77 --json
+near "$out" objects.1.parameters.exponent_u 77
+expect 1 "$relume" edit t.safetensors --list --set can.exponent=77
+expect 2 "$relume" tensor info t.safetensors -o none.safetensors
+expect 2 "$relume" tensor check t.safetensors --half
 expect 1 "$relume" edit none.safetensors -o out.exr
 expect 1 "$relume" edit "$tensors/relight.safetensors" -o out.exr
 contains "$err" "not a tensor of \`relume precompute edit\`"
@@ -76,6 +85,9 @@ expect 1 "$relume" edit t.safetensors -o out.exr --set can.exponent=3
 contains "$err" "there are: pot.lid cup"
 expect 1 "$relume" edit t.safetensors -o out.exr --set cup.eta=1.5
 contains "$err" "is fixed"
+for wrong in "translate-y,0,0,90,90,0.1,5" "amplify-y,0,0,90" "" "amplify-z,0,0,90,90,2"; do
+    expect 1 "$relume" edit t.safetensors -o out.exr --op "cup.specular.f_A:$wrong"
+done
 echo '{"steps": [{"turn": 1}]}' >bad.json
 expect 1 "$relume" edit t.safetensors --script bad.json
 contains "$err" "bad.json: step 1"
@@ -111,6 +123,8 @@ expect 1 "$relume" tensor crop t.safetensors -o none.safetensors --crop 2,3,50,1
 expect 2 "$relume" tensor crop t.safetensors -o none.safetensors
 expect 2 "$relume" tensor merge t.safetensors -o none.safetensors
 expect 2 "$relume" tensor shrink t.safetensors
+expect 1 "$relume" tensor export t.safetensors -o none.exr
+contains "$err" "precompute relight"
 [ ! -e none.safetensors ] || fail "a tensor was written after an error"
 # A value that is not finite: told by check, refused by edit.
 python3 - t.safetensors bad.safetensors <<'END'
@@ -128,7 +142,8 @@ contains "$err" "not finite"
 # A shape that the camera does not see casts shadows only, in a tensor with bounces as in the picture: a
 # tensor that lists it in its pixels has no place there for the light of the floor.
 cat >hidden.xml <<'END'
-<scene version="3.0.0"><integrator type="path"><integer name="max_depth" value="4"/></integrator>
+<scene version="3.0.0"><default name="depth" value="4"/>
+<integrator type="path"><integer name="max_depth" value="$depth"/></integrator>
 <sensor type="perspective"><transform name="to_world"><lookat origin="0,1,5" target="0,0.5,0" up="0,1,0"/>
 </transform><film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="18"/>
 <rfilter type="box"/></film></sensor><emitter type="constant"/><bsdf type="diffuse" id="floor"/>
@@ -139,6 +154,8 @@ END
 expect 0 "$relume" precompute edit hidden.xml -o hidden.safetensors --edit floor --bounces 3 \
     --series "8,1,1" --spp 64 --quiet
 expect 0 "$relume" edit hidden.safetensors -o hidden.exr
+expect 1 "$relume" verify hidden.safetensors hidden.xml -D depth=5 --pixels 16
+contains "$err" "found -D depth=5, expected none"
 expect 0 "$relume" render hidden.xml -o seen.exr --spp 64 --quiet
 expect 0 "$relume" compare seen.exr hidden.exr --fail-above relmse=2e-3
 
