@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/log.h"
 #include "curve/form_json.h"
+#include "replay/nearest.h"
 #include "replay/scene_copy.h"
 
 struct saving {
@@ -123,13 +124,17 @@ static void convert(struct saving *s, struct xml_node *node, const struct edited
 
 // The nearest material without curves, for a person to put there.
 static const char *nearest(struct saving *s, const struct edited_object *o) {
-    const struct model_parameters *p = &o->parameters;
-    const char *name = o->model ? o->model->name : "none";
-    const double *f = o->form.term[0].scale;
+    struct nearest n;
+    if (!o->model)
+        return " curves without a model ";
+    nearest_find(o, &n);
+    const struct model_parameters *p = &n.parameters;
+    const double *f = o->form.term[0].scale, *by = n.factor;
     return arena_printf(&s->copy.arena, " nearest without curves: %s, exponent_u %.4g, exponent_v %.4g, "
-                        "alpha_u %.4g, alpha_v %.4g; factor of its first term %.4g %.4g %.4g ",
-                        is(name, "lightview") ? "diffuse" : name, p->exponent_u, p->exponent_v,
-                        p->alpha_u, p->alpha_v, f[0], f[1], f[2]);
+                        "alpha_u %.4g, alpha_v %.4g; factor of its first term %.4g %.4g %.4g; it misses "
+                        "%.2g %% of the curves ", is(o->model->name, "lightview") ? "diffuse" : o->model->name,
+                        p->exponent_u, p->exponent_v, p->alpha_u, p->alpha_v, f[0] * by[0], f[1] * by[1],
+                        f[2] * by[2], 100 * n.missing);
 }
 
 // "OUT-OBJECT.json", with letters, digits, '-' and '_' of the name.

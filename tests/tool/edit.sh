@@ -154,6 +154,19 @@ END
 expect 0 "$relume" precompute edit hidden.xml -o hidden.safetensors --edit floor --bounces 3 \
     --series "8,1,1" --spp 64 --quiet
 expect 0 "$relume" edit hidden.safetensors -o hidden.exr
+# The nearest numbers of a model are told of curves that were edited by hand.
+sed 's|<bsdf type="diffuse" id="floor"/>|<bsdf type="phong" id="floor"><float name="exponent" value="16"/></bsdf>|' \
+    hidden.xml >phong.xml
+expect 0 "$relume" precompute edit phong.xml -o phong.safetensors --edit floor --direct --lights 16 --spp 1 --quiet
+expect 0 "$relume" edit phong.safetensors --set floor.exponent=40 --save-scene saved.xml
+contains "$(cat saved.xml)" "exponent_u 40,"
+contains "$(cat saved.xml)" "misses 0 %"
+expect 0 "$relume" edit phong.safetensors --op "floor.specular.f_A:amplify-x,0,0,60,90,0.5" --save-scene saved.xml
+python3 - saved.xml <<'END' || fail "the nearest exponent is not told: $(cat saved.xml)"
+import re, sys
+exponent, missing = re.search(r"exponent_u ([\d.]+),.* misses ([\d.]+) %", open(sys.argv[1]).read()).groups()
+assert 40 < float(exponent) < 90 and 0.1 < float(missing) < 20, (exponent, missing)
+END
 expect 1 "$relume" verify hidden.safetensors hidden.xml -D depth=5 --pixels 16
 contains "$err" "found -D depth=5, expected none"
 expect 0 "$relume" render hidden.xml -o seen.exr --spp 64 --quiet
