@@ -287,19 +287,36 @@ double edit_picture_largest(const struct edit_picture *a, const struct edit_pict
     return most / brightest;
 }
 
-void edit_picture_write_sky(const char *path, double sun, bool below_only) {
-    enum { W = 64, H = 32 };
+void edit_picture_write_sky(const char *path, int width, int height, edit_picture_radiance *of,
+                            const void *ctx) {
     struct image im;
-    if (!image_init(&im, W, H, 3))
+    if (!image_init(&im, width, height, 3))
         exit(1);
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++)
-            for (int c = 0; c < 3; c++) {
-                const bool up = y < H / 2;
-                double v = up ? 0.6 + 0.3 * sin(0.2 * x) : 0.2;
-                v = x == 20 && y == 8 ? v + sun : v;
-                im.pixels[(y * W + x) * 3 + c] = (float)(below_only && y <= H / 2 + 1 ? 0 : v);
-            }
-    image_write_exr(path, &im, NULL);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < 3; c++)
+                im.pixels[(y * width + x) * 3 + c] = (float)of(x, y, c, ctx);
+    if (!image_write_exr(path, &im, NULL))
+        exit(1);
     image_finish(&im);
+}
+
+enum { SUN_WIDE = 64, SUN_HIGH = 32 };
+
+struct sun {
+    double radiance;
+    bool below_only;
+};
+
+static double sunny(int x, int y, int channel, const void *ctx) {
+    const struct sun *s = ctx;
+    const double even = y < SUN_HIGH / 2 ? 0.6 + 0.3 * sin(0.2 * x) : 0.2;
+    (void)channel;
+    if (s->below_only && y <= SUN_HIGH / 2 + 1)
+        return 0;
+    return x == 20 && y == 8 ? even + s->radiance : even;
+}
+
+void edit_picture_write_sun(const char *path, double radiance, bool below_only) {
+    edit_picture_write_sky(path, SUN_WIDE, SUN_HIGH, sunny, &(struct sun){radiance, below_only});
 }

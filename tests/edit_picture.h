@@ -39,6 +39,10 @@ double edit_picture_relmse(const struct edit_picture *a, const struct edit_pictu
 double edit_picture_largest(const struct edit_picture *a, const struct edit_picture *b);
 double edit_picture_mean(const struct edit_picture *p);
 
-// Writes an environment, even above and below the horizon, with one texel brighter by `sun`;
-// below_only: black above.
-void edit_picture_write_sky(const char *path, double sun, bool below_only);
+// Writes an environment: what its texels' channels are.
+typedef double edit_picture_radiance(int x, int y, int channel, const void *ctx);
+void edit_picture_write_sky(const char *path, int width, int height, edit_picture_radiance *of,
+                            const void *ctx);
+// One that is even above and below the horizon, with one texel brighter by `radiance`; below_only:
+// black above.
+void edit_picture_write_sun(const char *path, double radiance, bool below_only);

@@ -4,21 +4,14 @@
 #include "edit_picture.h"
 #include "scene_text.h"
 
-// An environment with lamps of several sizes, made by the test.
-static void write_environment(void) {
-    enum { W = 64, H = 32 };
-    struct image im;
-    if (!image_init(&im, W, H, 3))
-        exit(1);
-    for (int y = 0; y < H; y++)
-        for (int x = 0; x < W; x++)
-            for (int c = 0; c < 3; c++) {
-                const double sky = y < H / 2 ? 0.6 + 0.2 * c : 0.15;
-                const bool lamp = x > 8 && x < 12 && y > 5 && y < 9, sun = x == 40 && y == 6;
-                im.pixels[(y * W + x) * 3 + c] = (float)(sky + (lamp ? 20 - 5 * c : 0) + (sun ? 300 : 0));
-            }
-    image_write_exr(scene_path("sky.exr"), &im, &(struct image_exr_options){0});
-    image_finish(&im);
+enum { SKY_WIDE = 64, SKY_HIGH = 32 };
+
+// Lamps of several sizes.
+static double lamps(int x, int y, int c, const void *ctx) {
+    const double sky = y < SKY_HIGH / 2 ? 0.6 + 0.2 * c : 0.15;
+    const bool lamp = x > 8 && x < 12 && y > 5 && y < 9, sun = x == 40 && y == 6;
+    (void)ctx;
+    return sky + (lamp ? 20 - 5 * c : 0) + (sun ? 300 : 0);
 }
 
 static const char *scene_of(const char *materials, const char *more) {
@@ -100,7 +93,7 @@ static void is_the_loop_over_the_same_lights(void) {
 
 int main(void) {
     scene_folder_open();
-    write_environment();
+    edit_picture_write_sky(scene_path("sky.exr"), SKY_WIDE, SKY_HIGH, lamps, NULL);
     is_the_loop_over_the_same_lights();
     scene_folder_close();
     return check_result();

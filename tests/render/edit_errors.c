@@ -135,7 +135,7 @@ static void falls_with_bins(void) {
     const struct edit_options o = options_of(1000);
     static const char *const bases[] = {"box", "hat"};
     struct edit_picture truth, p;
-    edit_picture_write_sky(scene_path("sky.exr"), 0, false);
+    edit_picture_write_sun(scene_path("sky.exr"), 0, false);
     picture("hat", 2048, 64, &o, &truth);
     for (int b = 0; b < 2; b++) {
         double first = 0, last = 0;
@@ -162,7 +162,7 @@ static void falls_with_lights(void) {
     struct edit_options o = options_of(64000);
     struct edit_picture truth, p;
     double error[2][5];
-    edit_picture_write_sky(scene_path("sky.exr"), 200, false);
+    edit_picture_write_sun(scene_path("sky.exr"), 200, false);
     picture("hat", 512, 1024, &o, &truth);
     for (int points = 0; points < 2; points++) {
         printf("relMSE against lights 100 to 16000, %s:", points ? "points" : "triangles");
@@ -285,7 +285,7 @@ static void survives_extremes(void) {
     static const char LEVEL[] = "<sensor type='perspective'><float name='fov' value='0.005'/>"
                                 "<transform name='to_world'><lookat origin='0,0.000873,5' target='0,0,0'"
                                 " up='0,1,0'/></transform>";
-    edit_picture_write_sky(scene_path("sky.exr"), 1e6, false);
+    edit_picture_write_sun(scene_path("sky.exr"), 1e6, false);
     check_extreme("a texel of 1e6", ASIDE, "", BALL, all);
     check_extreme("one pixel", ASIDE, "", BALL, one);
     check_extreme("a pixel that shows nothing", ASIDE, "", BALL, (const int[4]){0, 0, 1, 1});
@@ -296,13 +296,13 @@ static void survives_extremes(void) {
     check_extreme("exponent 1e5", ASIDE, "<float name='exponent' value='1e5'/>", BALL, all);
     check_extreme("black", ASIDE, "<rgb name='specular_reflectance' value='0'/>", BALL, all);
     check_extreme("89.99 degrees", LEVEL, "<string name='model' value='cooktorrance'/>", FLOOR, all);
-    edit_picture_write_sky(scene_path("sky.exr"), 0, true);
+    edit_picture_write_sun(scene_path("sky.exr"), 0, true);
     check_extreme("light below the horizon", ASIDE, "", FLOOR, all);
 }
 
 int main(void) {
     scene_folder_open();
-    edit_picture_write_sky(scene_path("sky.exr"), 0, false);
+    edit_picture_write_sun(scene_path("sky.exr"), 0, false);
     agrees_with_closed_forms();
     matrices_sum_to_vectors();
     falls_with_bins();

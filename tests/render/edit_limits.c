@@ -49,7 +49,7 @@ static const struct limit limits[] = {
 
 static const char *write_scene(const struct limit *l) {
     char text[4096];
-    edit_picture_write_sky(scene_path("sky.exr"), l->sky == TEXEL ? 1e6 : 0, l->sky == BELOW);
+    edit_picture_write_sun(scene_path("sky.exr"), l->sky == TEXEL ? 1e6 : 0, l->sky == BELOW);
     snprintf(text, sizeof text,
              "<scene version='3.0.0'><integrator type='path'/><sensor type='perspective'>%s"
              "<film type='hdrfilm'><integer name='width' value='%d'/><integer name='height' value='%d'/>"

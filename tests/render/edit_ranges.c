@@ -23,14 +23,12 @@ static const char scene[] =
 
 static char paths[6][300];
 
-static void write_environment(void) {
-    enum { WIDE = 32, HIGH = 16 };
-    struct image im;
-    CHECK(image_init(&im, WIDE, HIGH, 3));
-    for (int i = 0; i < 3 * WIDE * HIGH; i++)
-        im.pixels[i] = i / 3 == 5 * WIDE + 9 ? 300.0f : 0.5f + 0.4f * sinf((float)(i / 3));
-    CHECK(image_write_exr(scene_path("sky.exr"), &im, NULL));
-    image_finish(&im);
+enum { SKY_WIDE = 32, SKY_HIGH = 16 };
+
+static double waves(int x, int y, int channel, const void *ctx) {
+    (void)channel;
+    (void)ctx;
+    return (double)(x == 9 && y == 5 ? 300.0f : 0.5f + 0.4f * sinf((float)(y * SKY_WIDE + x)));
 }
 
 static struct edit_options options_of(uint32_t first, uint32_t end, const char *output) {
@@ -132,7 +130,7 @@ static void work_goes_on(void) {
 int main(void) {
     scene_folder_open();
     scene_write("scene.xml", scene);
-    write_environment();
+    edit_picture_write_sky(scene_path("sky.exr"), SKY_WIDE, SKY_HIGH, waves, NULL);
     for (int i = 0; i < 6; i++) {
         char name[32];
         snprintf(name, sizeof name, "%d.safetensors", i);
