@@ -258,13 +258,15 @@ static const bool *find_split(struct polynomial *p, enum polynomial_later later)
 // A path's marks multiply at hops whose terms have factors. Two of a term's coarse coefficients can be
 // met at once, that of a hat and its neighbour's.
 static bool marks_fit(const struct polynomial *p, const struct polynomial_options *o) {
-    uint64_t terms = 1, marks = 1;
-    for (uint32_t i = 0; i < p->plan.count; i++)
-        if (p->groups.factors[p->groups.step[i]].term != EDIT_ALBEDO &&
-            p->plan.objects[i].form->terms > terms)
-            terms = p->plan.objects[i].form->terms;
+    uint64_t all = 1, terms = 1, marks = 1; // all: split or not
+    for (uint32_t i = 0; i < p->plan.count; i++) {
+        const uint32_t own = p->plan.objects[i].form->terms;
+        all = own > all ? own : all;
+        if (p->groups.factors[p->groups.step[i]].term != EDIT_ALBEDO)
+            terms = own > terms ? own : terms;
+    }
     for (uint32_t hop = 1; hop < o->bounces && marks <= CHAIN_MARKS; hop++)
-        marks *= hop == 1 && o->series[1] > 1 ? 2 * terms : terms;
+        marks *= hop == 1 && o->series[1] > 1 ? 2 * all : terms;
     if (terms == 1 || marks <= CHAIN_MARKS)
         return true;
     log_error("--later terms: %u terms of a material and %u bounces make more than %d products on a "
