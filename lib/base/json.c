@@ -203,9 +203,13 @@ static void print_members(const json_t *object, int indent) {
             const char *name;
             json_t *member;
             json_object_foreach(value, name, member) {
-                printf("\n%*s%s: ", indent + 2, "", name);
-                if (is_plain(member))
+                printf("\n%*s%s:", indent + 2, "", name);
+                if (json_typeof(member) == JSON_ARRAY) {
+                    print_items(member, indent + 4);
+                } else if (is_plain(member)) {
+                    putchar(' ');
                     print_plain(member);
+                }
             }
         } else {
             putchar(' ');

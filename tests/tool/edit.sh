@@ -161,11 +161,11 @@ expect 0 "$relume" precompute edit phong.xml -o phong.safetensors --edit floor -
 expect 0 "$relume" edit phong.safetensors --set floor.exponent=40 --save-scene saved.xml
 contains "$(cat saved.xml)" "exponent_u 40,"
 contains "$(cat saved.xml)" "misses 0 %"
-expect 0 "$relume" edit phong.safetensors --op "floor.specular.f_A:amplify-x,0,0,60,90,0.5" --save-scene saved.xml
+expect 0 "$relume" edit phong.safetensors --op "floor.specular.f_A:amplify-x,0,0,10,90,2" --save-scene saved.xml
 python3 - saved.xml <<'END' || fail "the nearest exponent is not told: $(cat saved.xml)"
 import re, sys
 exponent, missing = re.search(r"exponent_u ([\d.]+),.* misses ([\d.]+) %", open(sys.argv[1]).read()).groups()
-assert 40 < float(exponent) < 90 and 0.1 < float(missing) < 20, (exponent, missing)
+assert 3 < float(exponent) < 5 and 0.1 < float(missing) < 20 # 16 / 4 where the factor is whole, (exponent, missing)
 END
 expect 1 "$relume" verify hidden.safetensors hidden.xml -D depth=5 --pixels 16
 contains "$err" "found -D depth=5, expected none"
