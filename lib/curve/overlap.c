@@ -19,8 +19,7 @@ void overlap_init(struct overlap *o, const struct gamma *const gamma[OVERLAP_AXE
         if (b->spacing == SPACING_UNIFORM)
             o->axis[i].per_step = basis_intervals(b) / b->knots[basis_intervals(b)];
         o->share[i] = arena_alloc(arena, b->count * sizeof *o->share[i]);
-        if (axes == OVERLAP_AXES)
-            o->margin[i] = arena_alloc(arena, b->count * sizeof *o->margin[i]);
+        o->margin[i] = arena_alloc(arena, b->count * sizeof *o->margin[i]);
     }
     if (axes == OVERLAP_AXES) {
         o->joint = arena_alloc(arena, (size_t)basis[0]->count * basis[1]->count * sizeof *o->joint);
@@ -226,6 +225,8 @@ void overlap_add_point(struct overlap *o, const double gamma[OVERLAP_AXES],
 static const int parts[4][3] = {{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}};
 
 static bool within_one_interval(const struct overlap_axis *a, double least, double most) {
+    if (ends(a) && most > a->basis.knots[basis_intervals(&a->basis)])
+        return false;
     return least >= 0 ? overlap_interval(a, least) == overlap_interval(a, most)
                       : most <= 0 && overlap_interval(a, -least) == overlap_interval(a, -most);
 }
@@ -240,7 +241,8 @@ static double error_of(const struct overlap_axis *a, const double g[OVERLAP_NODE
         least = smaller(least, g[i]);
         most = larger(most, g[i]);
     }
-    *single = within_one_interval(a, least, most);
+    // Between nodes it may go on by half of the bend.
+    *single = within_one_interval(a, least < 0 ? least : larger(least - 0.5 * bend, 0), most + 0.5 * bend);
     if (*single && a->basis.kind == BASIS_BOX)
         return 0;
     const uint32_t i = overlap_interval(a, fabs(least));
@@ -393,17 +395,21 @@ void overlap_add_alone(struct overlap *o, uint32_t axis, const struct overlap_tr
     o->touched[axis] = one.touched[0];
 }
 
-// Sums that an axis which ends may have lost something of are not those of the other axis alone.
-void overlap_add_fitted(struct overlap *o, const struct overlap_triangle *t,
-                        double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]) {
+void overlap_add_joint(struct overlap *o, const struct overlap_triangle *t,
+                       double gamma[OVERLAP_AXES][OVERLAP_NODES]) {
     struct overlap both = *o;
-    const double *const sum[OVERLAP_AXES] = {ends(&o->axis[1]) ? NULL : o->margin[0],
-                                             ends(&o->axis[0]) ? NULL : o->margin[1]};
-    const uint32_t columns = o->axis[1].basis.count;
     both.channels = 1;
     both.sums = o->joint;
     add_triangle(&both, t, gamma, 1, o->depth, all);
-    const struct overlap_range *r = both.touched;
+    memcpy(o->touched, both.touched, sizeof o->touched);
+}
+
+// Sums that an axis which ends may have lost something of are not those of the other axis alone.
+void overlap_finish_joint(struct overlap *o, const double light[OVERLAP_CHANNELS]) {
+    const double *const sum[OVERLAP_AXES] = {ends(&o->axis[1]) ? NULL : o->margin[0],
+                                             ends(&o->axis[0]) ? NULL : o->margin[1]};
+    const uint32_t columns = o->axis[1].basis.count;
+    const struct overlap_range *r = o->touched;
     joint_fit(o->joint, columns, (uint32_t[]){r[0].first, r[1].first}, (uint32_t[]){r[0].end, r[1].end},
               sum, o->missing);
     for (uint32_t j = r[0].first; j < r[0].end; j++)
@@ -427,5 +433,6 @@ void overlap_add(struct overlap *o, const struct overlap_triangle *t,
     }
     for (uint32_t x = 0; x < OVERLAP_AXES; x++)
         overlap_add_alone(o, x, t, gamma);
-    overlap_add_fitted(o, t, gamma, light);
+    overlap_add_joint(o, t, gamma);
+    overlap_finish_joint(o, light);
 }

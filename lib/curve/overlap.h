@@ -59,7 +59,7 @@ struct overlap {
     double *share[OVERLAP_AXES]; // scratch, a number for each function
     double *sums;     // [functions of axis 0][of axis 1][channels]
     int channels;     // 3
-    // With two curves, scratch that is zero between uses: shares of each axis alone, of both, and where.
+    // Scratch that is zero between uses: shares of each axis alone, with two curves of both, and where.
     double *margin[OVERLAP_AXES], *joint, *missing;
     struct overlap_range touched[OVERLAP_AXES];
     double wo[3];
@@ -87,12 +87,13 @@ double overlap_gamma(const struct gamma *g, struct angles *a);
 void overlap_add(struct overlap *o, const struct overlap_triangle *t, double gamma[OVERLAP_AXES][OVERLAP_NODES],
                  const double light[OVERLAP_CHANNELS]);
 
-// The two steps of that with two curves: shares of an axis alone in margin[axis], which others may
-// have put there; and all, brought to these.
+// Steps of that with two curves, the first two of which others may do: shares of an axis alone in
+// margin[axis]; of both in joint; and light times these, brought to those.
 void overlap_add_alone(struct overlap *o, uint32_t axis, const struct overlap_triangle *t,
                        double gamma[OVERLAP_AXES][OVERLAP_NODES]);
-void overlap_add_fitted(struct overlap *o, const struct overlap_triangle *t,
-                        double gamma[OVERLAP_AXES][OVERLAP_NODES], const double light[OVERLAP_CHANNELS]);
+void overlap_add_joint(struct overlap *o, const struct overlap_triangle *t,
+                       double gamma[OVERLAP_AXES][OVERLAP_NODES]);
+void overlap_finish_joint(struct overlap *o, const double light[OVERLAP_CHANNELS]);
 // Makes room in the touched range of an axis.
 void overlap_touch(struct overlap *o, uint32_t axis, uint32_t first, uint32_t end);
 

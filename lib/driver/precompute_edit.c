@@ -17,7 +17,7 @@ enum { DEFAULT_POSITIONS = 16, TRIAL_REGIONS = 6, DRY_REGIONS = 24 };
 struct worker {
     struct light_loop *loop;
     double *sums, *halves;   // of a pixel
-    float *values, *noise;   // of a block: [coefficient][3][16]
+    float *values, *noise;   // of a block: [16][coefficient][3]
     uint64_t rays;
     double shadow_seconds, sum_seconds;
 };
@@ -162,7 +162,7 @@ static bool make_workers(struct precompute *p) {
     }
     for (int i = 0; i < p->threads; i++) {
         struct worker *w = &p->workers[i];
-        w->sums = mem_array(n, sizeof *w->sums);
+        w->sums = mem_array(n + LIGHT_LOOP_SPARE, sizeof *w->sums);
         w->values = mem_array(n * LIGHT_LOOP_PIXELS, sizeof *w->values);
         w->halves = p->noisy ? mem_array(n, sizeof *w->halves) : NULL;
         w->noise = p->noisy ? mem_array(n * LIGHT_LOOP_PIXELS, sizeof *w->noise) : NULL;
@@ -175,6 +175,7 @@ static bool make_workers(struct precompute *p) {
 // Lists of the places of a block's pixels that show an object, and what they got.
 static void store(const struct precompute *p, uint32_t object, const uint32_t *places,
                   const uint32_t *lanes, uint32_t count, const float *from, bool noise) {
+    const size_t all = (size_t)light_loop_coefficients(p->scene, object) * CURVE_CHANNELS;
     size_t at = 0;
     for (uint32_t t = 0; t < p->plan.objects[object].form->terms; t++) {
         const uint32_t block = p->first_block[object] + t;
@@ -185,7 +186,7 @@ static void store(const struct precompute *p, uint32_t object, const uint32_t *p
             for (uint32_t k = 0; k < count; k++) {
                 const size_t tile = places[k] / TENSOR_LANES, lane = places[k] % TENSOR_LANES;
                 const size_t place = (tile * n + i) * TENSOR_LANES + lane;
-                const float v = from[(at + i) * LIGHT_LOOP_PIXELS + lanes[k]];
+                const float v = from[lanes[k] * all + at + i];
                 if (b->storage == TENSOR_BF16)
                     ((uint16_t *)to)[place] = bf16_from_float(v);
                 else
@@ -210,9 +211,9 @@ static void sum_object(const struct precompute *p, struct worker *w, int x0, int
             continue;
         light_loop_sum(w->loop, i, object, w->sums, w->halves);
         for (size_t k = 0; k < n; k++)
-            w->values[k * LIGHT_LOOP_PIXELS + i] = bounded(w->sums[k]);
+            w->values[i * n + k] = bounded(w->sums[k]);
         for (size_t k = 0; k < n && p->noisy; k++)
-            w->noise[k * LIGHT_LOOP_PIXELS + i] = bounded(w->halves[k]);
+            w->noise[i * n + k] = bounded(w->halves[k]);
         lanes[count] = i;
         places[count++] = place;
     }

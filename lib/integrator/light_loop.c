@@ -5,16 +5,34 @@
 
 #include "base/mem.h"
 
-// Of the few triangles that are split (integrator/wide_overlap.h).
-static const double DEFAULT_TOLERANCE = 1e-2;
+// What a triangle's shares may be off by, where nothing else is asked for: as much of the sky for
+// large triangles as for small ones, 4e-4 of a triangle of 400 even ones, 4e-3 of one of 4000.
+static double default_tolerance(double solid_angle) {
+    const double t = 1.26e-5 / solid_angle;
+    return t < 1e-4 ? 1e-4 : t > 1e-2 ? 1e-2 : t;
+}
 
 enum { MOST_SURFACES = 64 }; // straight through, before the rest counts as opaque
 
 // ---- scene --------------------------------------------------------------------------------------
 
+static void fill_rows(struct light_rows *r, const struct overlap_triangle *t, vec3 centre,
+                      double tolerance) {
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < OVERLAP_NODES; i++)
+            r->row[i][k] = (float)t->node[i][k];
+        r->row[LIGHT_CENTRE][k] = centre[k];
+    }
+    r->row[LIGHT_CENTRE][3] = (float)tolerance;
+    for (int k = 0; k < 4; k++)
+        r->row[LIGHT_PARTS][k] = (float)t->part[k];
+}
+
 static void init_triangles(struct light_loop_scene *s) {
     const struct light_triangles *sky = s->options.lights;
+    const double asked = s->options.tolerance;
     s->triangles = mem_array(sky->count, sizeof *s->triangles);
+    s->rows = mem_array(sky->count, sizeof *s->rows);
     s->centres = mem_array(sky->count, sizeof *s->centres);
     for (uint32_t i = 0; i < sky->count; i++) {
         const struct light_triangle *l = &sky->items[i];
@@ -26,6 +44,8 @@ static void init_triangles(struct light_loop_scene *s) {
         }
         overlap_triangle_make(&s->triangles[i], corner);
         s->centres[i] = direction_round(l->centre);
+        fill_rows(&s->rows[i], &s->triangles[i], s->centres[i],
+                  asked > 0 ? asked : default_tolerance(l->solid_angle));
     }
 }
 
@@ -86,6 +106,7 @@ void light_loop_scene_destroy(struct light_loop_scene *s) {
         light_choice_finish(&s->choice);
     mem_free(s->others);
     mem_free(s->triangles);
+    mem_free(s->rows);
     mem_free(s->centres);
     mem_free(s->seen);
     mem_free(s->first);
@@ -124,8 +145,7 @@ static void init_overlaps(struct light_loop *l, uint32_t object) {
             basis[axes++] = &f->curve[slot->curve].f[0].table->basis;
         }
         wide_quotient_init(&l->quotients[object][t], &f->term[t].quotient, &l->arena);
-        overlap_init(&l->overlaps[object][t], gamma, basis, axes, &l->arena);
-        l->overlaps[object][t].tolerance = o->tolerance > 0 ? o->tolerance : DEFAULT_TOLERANCE;
+        wide_overlap_init(&l->overlaps[object][t], gamma, basis, axes, &l->arena);
     }
 }
 

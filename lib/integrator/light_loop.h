@@ -21,7 +21,7 @@
 #include "sensor/sensor.h"
 #include "world/world.h"
 
-enum { LIGHT_LOOP_SIDE = 4, LIGHT_LOOP_PIXELS = 16 };
+enum { LIGHT_LOOP_SIDE = 4, LIGHT_LOOP_PIXELS = 16, LIGHT_LOOP_SPARE = 48 };
 
 enum light_packets {
     PACKETS_OF_PIXELS, // 16 points of the block towards one light
@@ -43,7 +43,7 @@ struct light_loop_options {
     bool refines; // the lights are what a list has more than another: only they are summed
     bool unshadowed; // nothing hides the triangles, for comparison
     bool as_points; // triangles count as points at their centres, for comparison
-    double tolerance; // of shares (curve/overlap.h); 0: 1e-2
+    double tolerance; // of shares (curve/overlap.h); 0: 1.26e-5 sr / its solid angle, 1e-4 to 1e-2
     uint32_t light_samples; // of the other lights at each position: even
     const struct light_loop_object *objects;
     uint32_t object_count;
@@ -82,6 +82,6 @@ uint64_t light_loop_shadow(struct light_loop *l);
 // Mean of theta_o where a pixel shows an object, for f_o.
 float light_loop_view(const struct light_loop *l, uint32_t pixel, uint32_t object);
 // What a pixel gets from an object: sums[coefficient][3], and of the noise (a - b) / 2 where there
-// is some (halves may be NULL).
+// is some (halves may be NULL). sums has LIGHT_LOOP_SPARE numbers more.
 void light_loop_sum(struct light_loop *l, uint32_t pixel, uint32_t object, double *sums,
                     double *halves);

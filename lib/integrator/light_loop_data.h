@@ -3,10 +3,20 @@
 #pragma once
 
 #include "integrator/light_loop.h"
+#include "integrator/wide_overlap.h"
 #include "integrator/wide_quotient.h"
+
+// A triangle for sixteen at a time: its nodes, centre (then the tolerance of
+// its shares) and parts.
+enum { LIGHT_CENTRE = OVERLAP_NODES, LIGHT_PARTS, LIGHT_ROWS };
+
+struct light_rows {
+    float row[LIGHT_ROWS][4];
+};
 
 struct light_loop_scene {
     struct light_loop_options options;
+    struct light_rows *rows;
     struct overlap_triangle *triangles; // of the lights, world space
     vec3 *centres;
     uint32_t *seen, *first; // lights by position: those of p are seen[first[p]] to seen[first[p + 1]]
@@ -50,7 +60,7 @@ struct light_loop {
     size_t visit_count, visit_capacity;
     struct arrival *arrivals; // `most` for each visit
     size_t arrival_capacity, most;
-    struct overlap **overlaps;         // by object: of its terms
+    struct wide_overlap **overlaps;    // by object: of its terms
     struct wide_quotient **quotients;
     struct closure_stack stack;
     struct arena arena;

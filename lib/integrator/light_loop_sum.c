@@ -4,14 +4,13 @@
 
 #include "integrator/light_loop_data.h"
 #include "integrator/wide_angles.h"
-#include "integrator/wide_overlap.h"
 
 // A visit that is being added up.
 struct shading {
     struct light_loop *loop;
     const struct visit *visit;
     const struct form *form;
-    struct overlap *terms;
+    struct wide_overlap *terms;
     const struct wide_quotient *quotients; // of the terms
     const struct closure *outer, *inner;
     vec3 rows[3];
@@ -41,7 +40,7 @@ static void light_of_term(const struct shading *s, uint32_t term, struct angles 
 
 static void add_point(const struct shading *s, struct angles *a, const double light[CURVE_CHANNELS]) {
     for (uint32_t t = 0; t < s->form->terms; t++) {
-        struct overlap *o = &s->terms[t];
+        struct overlap *o = &s->terms[t].scalar;
         double gamma[OVERLAP_AXES], share[CURVE_CHANNELS];
         light_of_term(s, t, a, light, share);
         for (uint32_t x = 0; x < o->axes; x++)
@@ -56,46 +55,47 @@ static void add_point(const struct shading *s, struct angles *a, const double li
 struct bundle {
     const struct arrival *list;
     uint32_t count;
-    wide gamma[FORM_TERMS][OVERLAP_AXES][OVERLAP_NODES];
+    struct wide_nodes nodes; // in the frame of the closure
+    struct wide_fit fit[FORM_TERMS][OVERLAP_AXES];
     wide quotient[FORM_TERMS][CURVE_CHANNELS]; // times cosine, at the centres
 };
 
-static struct wide3 to_closure(const struct shading *s, float d[3][WIDE_LANES]) {
-    const struct wide3 w = {wide_load(d[0]), wide_load(d[1]), wide_load(d[2])};
+// What rows of the triangles hold.
+static void load_rows(const struct shading *s, const struct bundle *b, int row, wide out[4]) {
+    const float *from[WIDE_LANES];
+    for (uint32_t i = 0; i < WIDE_LANES; i++)
+        from[i] = s->loop->scene->rows[b->list[i < b->count ? i : 0].light].row[row];
+    wide_gather4(from, out);
+}
+
+// Directions in the frame of the closure.
+static struct wide3 load_local(const struct shading *s, const struct bundle *b, int row) {
+    wide d[4];
+    load_rows(s, b, row, d);
+    const struct wide3 w = {d[0], d[1], d[2]};
     return (struct wide3){wide_dot(wide3_of(s->rows[0]), w), wide_dot(wide3_of(s->rows[1]), w),
                           wide_dot(wide3_of(s->rows[2]), w)};
 }
 
-// A node of the triangles, in the frame of the closure.
-static struct wide3 local_nodes(const struct shading *s, const struct bundle *b, int node) {
-    const struct overlap_triangle *triangles = s->loop->scene->triangles;
-    float d[3][WIDE_LANES];
-    for (uint32_t i = 0; i < WIDE_LANES; i++)
-        for (int k = 0; k < 3; k++)
-            d[k][i] = (float)triangles[b->list[i < b->count ? i : 0].light].node[node][k];
-    return to_closure(s, d);
-}
-
-static struct wide3 local_centres(const struct shading *s, const struct bundle *b) {
-    float d[3][WIDE_LANES];
-    for (uint32_t i = 0; i < WIDE_LANES; i++)
-        for (int k = 0; k < 3; k++)
-            d[k][i] = s->loop->scene->centres[b->list[i < b->count ? i : 0].light][k];
-    return to_closure(s, d);
-}
-
 static void find_gammas(const struct shading *s, struct bundle *b) {
-    struct wide3 nodes[OVERLAP_NODES];
+    wide centre[4];
     for (int i = 0; i < OVERLAP_NODES; i++)
-        nodes[i] = local_nodes(s, b, i);
-    for (uint32_t t = 0; t < s->form->terms; t++)
-        for (uint32_t x = 0; x < s->terms[t].axes; x++)
+        b->nodes.node[i] = load_local(s, b, i);
+    load_rows(s, b, LIGHT_PARTS, b->nodes.part);
+    load_rows(s, b, LIGHT_CENTRE, centre);
+    b->nodes.tolerance = centre[3];
+    for (uint32_t t = 0; t < s->form->terms; t++) {
+        const struct wide_overlap *o = &s->terms[t];
+        wide gamma[OVERLAP_AXES][OVERLAP_NODES];
+        for (uint32_t x = 0; x < o->scalar.axes; x++)
             for (int i = 0; i < OVERLAP_NODES; i++)
-                b->gamma[t][x][i] = wide_gamma(&s->terms[t].axis[x].gamma, s->wo, &nodes[i]);
+                gamma[x][i] = wide_gamma(&o->scalar.axis[x].gamma, s->wo, &b->nodes.node[i]);
+        wide_overlap_fit(o, &b->nodes, gamma, b->fit[t]);
+    }
 }
 
 static void find_quotients(const struct shading *s, struct bundle *b) {
-    const struct wide3 centres = local_centres(s, b);
+    const struct wide3 centres = load_local(s, b, LIGHT_CENTRE);
     for (uint32_t t = 0; t < s->form->terms; t++)
         if (s->quotients[t].fits)
             wide_quotient_cos(&s->quotients[t], s->wo, &centres, b->quotient[t]);
@@ -127,20 +127,16 @@ static void add_triangle(const struct shading *s, struct bundle *b, uint32_t i) 
     const struct light_triangle *l = &scene->options.lights->items[arrival->light];
     const vec3 wi = to_local(&s->visit->surface.point.frame, scene->centres[arrival->light]);
     const double factor = (double)factor_of(s, wi);
-    double light[CURVE_CHANNELS], g[OVERLAP_AXES][OVERLAP_NODES];
+    double light[CURVE_CHANNELS];
     if (!(factor > 0))
         return;
     for (uint32_t t = 0; t < s->form->terms; t++) {
-        struct overlap *o = &s->terms[t];
         if (!s->quotients[t].fits)
             find_quotient(s, b, t, i, wi);
         for (int k = 0; k < CURVE_CHANNELS; k++)
             light[k] = l->power[k] * factor * (double)(arrival->through[k] * b->quotient[t][k][i]) *
                        s->texture[t][k];
-        for (uint32_t x = 0; x < o->axes; x++)
-            for (int k = 0; k < OVERLAP_NODES; k++)
-                g[x][k] = (double)b->gamma[t][x][k][i];
-        wide_overlap_add(o, &scene->triangles[arrival->light], g, light);
+        wide_overlap_add(&s->terms[t], b->fit[t], &b->nodes, i, &scene->triangles[arrival->light], light);
     }
 }
 
@@ -176,10 +172,12 @@ static void add_triangles(const struct shading *s, const struct arrival *list, u
 
 // ---- other lights -------------------------------------------------------------------------------
 
+_Static_assert((int)LIGHT_LOOP_SPARE >= (int)WIDE_OVERLAP_SPARE, "sums have room");
+
 // Terms follow one another in the sums.
 static void aim_sums(const struct shading *s, double *sums) {
     for (uint32_t t = 0; t < s->form->terms; t++) {
-        struct overlap *o = &s->terms[t];
+        struct overlap *o = &s->terms[t].scalar;
         o->sums = sums;
         sums += (size_t)CURVE_CHANNELS * (o->axes > 0 ? o->axis[0].basis.count : 1) *
                 (o->axes > 1 ? o->axis[1].basis.count : 1);
@@ -241,7 +239,7 @@ static bool begin_visit(struct shading *s, struct light_loop *l, const struct vi
         return false;
     s->wo = editable_wo(s->inner);
     for (uint32_t t = 0; t < s->form->terms; t++) {
-        struct overlap *o = &s->terms[t];
+        struct overlap *o = &s->terms[t].scalar;
         const spectrum texture = editable_texture_at(s->inner, t) * v->weight;
         o->wo[0] = s->wo.x;
         o->wo[1] = s->wo.y;

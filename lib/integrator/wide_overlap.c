@@ -1,204 +1,194 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/wide_overlap.h"
 
-#include "math/wide.h"
+#include <string.h>
 
-enum { MOST = 48 }; // functions that a triangle may touch here
+#include "integrator/wide_split.h"
+#include "math/wide_double.h"
 
-// Bend of gamma, relative to its range, up to which a quadratic will do.
-static const float MOST_BEND = 0.12f;
-
-static const float THIN = 1e-7f; // radians: no part is thinner
-
-// Barycentric coordinates of corners 1 and 2 at the corners of the parts of the parts.
-static const wide b1[3] = {
-    {0, 0.5, 0, 0.25, 1, 0.5, 0.5, 0.75, 0, 0, 0.5, 0, 0.5, 0.5, 0, 0.5},
-    {0.25, 0.25, 0, 0.25, 0.75, 0.5, 0.75, 0.5, 0, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25},
-    {0, 0.25, 0.25, 0, 0.75, 0.75, 0.5, 0.75, 0.25, 0, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25},
-};
-static const wide b2[3] = {
-    {0, 0, 0.5, 0, 0, 0.5, 0, 0.25, 1, 0.5, 0.5, 0.75, 0, 0.5, 0.5, 0.25},
-    {0, 0.25, 0.25, 0.25, 0.25, 0.25, 0, 0.25, 0.75, 0.5, 0.75, 0.5, 0.25, 0.5, 0.25, 0.5},
-    {0.25, 0, 0.25, 0.25, 0, 0.25, 0.25, 0, 0.75, 0.75, 0.5, 0.75, 0.25, 0.25, 0.5, 0.25},
-};
-
-// The shares of each part in the functions from `first` on.
-struct shares {
-    uint32_t first, count;
-    wide share[MOST];
-};
-
-// Gammas of the parts in order, and what of the triangle each is.
-struct slopes {
-    wide g0, g1, g2, rise, fall, part;
-};
-
-static struct slopes slopes_of(wide a, wide b, wide c, wide part) {
-    const wide low = wide_min(a, b), high = wide_max(a, b);
-    const wide g0 = wide_min(low, c), g2 = wide_max(wide_max(high, c), g0 + THIN);
-    const wide g1 = wide_max(low, wide_min(high, c)), none = wide_of(1e-12f);
-    const wide width = g2 - g0;
-    return (struct slopes){g0, g1, g2, 1 / (wide_max(g1 - g0, none) * width),
-                           1 / (wide_max(g2 - g1, none) * width), part};
+void wide_overlap_init(struct wide_overlap *o, const struct gamma *const gamma[OVERLAP_AXES],
+                       const struct basis *const basis[OVERLAP_AXES], uint32_t axes, struct arena *arena) {
+    overlap_init(&o->scalar, gamma, basis, axes, arena);
+    for (uint32_t i = 0; i < axes; i++)
+        wide_axis_init(&o->axis[i], &o->scalar.axis[i], arena);
 }
 
-// Share of the area below t.
-static inline wide below(const struct slopes *s, wide t) {
-    const wide r = wide_min(wide_max(t, s->g0), s->g1) - s->g0;
-    const wide f = s->g2 - wide_min(wide_max(t, s->g1), s->g2), d = s->g2 - s->g1;
-    return r * r * s->rise + (d * d - f * f) * s->fall;
+void wide_overlap_fit(const struct wide_overlap *o, const struct wide_nodes *n,
+                      wide gamma[OVERLAP_AXES][OVERLAP_NODES], struct wide_fit fit[OVERLAP_AXES]) {
+    for (uint32_t x = 0; x < o->scalar.axes; x++)
+        wide_fit_make(&fit[x], &o->axis[x], gamma[x], n->part, n->tolerance);
 }
 
-// Its integral up to t.
-static inline wide integral_below(const struct slopes *s, wide t) {
-    const wide r = wide_min(wide_max(t, s->g0), s->g1) - s->g0;
-    const wide c = wide_min(wide_max(t, s->g1), s->g2), f = s->g2 - c, d = s->g2 - s->g1;
-    return r * r * r * s->rise * (1.0f / 3) + (c - s->g1) -
-           s->fall * (d * d * d - f * f * f) * (1.0f / 3) + wide_max(t - s->g2, wide_of(0));
+// ---- to the sums --------------------------------------------------------------------------------
+
+// Adds share[i] * light[c] to sum[3 i + c].
+static inline void add_eight(double *sum, const wide_double light[OVERLAP_CHANNELS], wide_double share) {
+    wide_double old[OVERLAP_CHANNELS];
+    memcpy(old, sum, sizeof old);
+    old[0] += light[0] * __builtin_shufflevector(share, share, 0, 0, 0, 1, 1, 1, 2, 2);
+    old[1] += light[1] * __builtin_shufflevector(share, share, 2, 3, 3, 3, 4, 4, 4, 5);
+    old[2] += light[2] * __builtin_shufflevector(share, share, 5, 5, 6, 6, 6, 7, 7, 7);
+    memcpy(sum, old, sizeof old);
 }
 
-// Adds the shares in functions from out->first to the interval `last`, which takes what lies beyond.
-static void add_boxes(const struct overlap_axis *a, const struct slopes *s, uint32_t last, bool from_0,
-                      struct shares *out) {
-    const double *k = a->basis.knots;
-    const bool ends = a->gamma.kind == GAMMA_THETA_R && last + 1 == basis_intervals(&a->basis);
-    // Nothing lies below the first edge but rounding.
-    wide F = from_0 ? below(s, wide_of((float)k[out->first])) : wide_of(0);
-    for (uint32_t i = out->first; i <= last; i++) {
-        const wide F1 = i < last || ends ? below(s, wide_of((float)k[i + 1])) : wide_of(1);
-        out->share[i - out->first] += s->part * (F1 - F);
-        F = F1;
+// Three numbers, over and over.
+struct lit {
+    wide_double pattern[OVERLAP_CHANNELS];
+};
+
+static struct lit lit_of(const double l[OVERLAP_CHANNELS]) {
+    return (struct lit){{{l[0], l[1], l[2], l[0], l[1], l[2], l[0], l[1]},
+                         {l[2], l[0], l[1], l[2], l[0], l[1], l[2], l[0]},
+                         {l[1], l[2], l[0], l[1], l[2], l[0], l[1], l[2]}}};
+}
+
+// Shares of functions from `first` on, of which no more than `count` are not 0.
+static inline void add_shares(double *sums, size_t first, uint32_t count, const struct lit *l, wide share) {
+    add_eight(sums + first * OVERLAP_CHANNELS, l->pattern, wide_half_to_double(share, 0));
+    if (count > WIDE_LANES / 2)
+        add_eight(sums + (first + WIDE_LANES / 2) * OVERLAP_CHANNELS, l->pattern,
+                  wide_half_to_double(share, 1));
+}
+
+// ---- one curve ----------------------------------------------------------------------------------
+
+// The parts of a triangle.
+static struct part_run run_of(const struct wide_overlap *o, uint32_t x, const struct wide_fit *f,
+                              const struct wide_nodes *n, uint32_t lane, bool fine,
+                              struct part room[FIT_FINE]) {
+    struct part_run r = {f->part[lane], FIT_COARSE, f->first[lane], f->count[lane], f->straddles >> lane & 1};
+    wide weight;
+    if (!fine)
+        return r;
+    for (int i = 0; i < FIT_FINE; i++)
+        weight[i] = 0.25f * n->part[i / 4][lane];
+    wide_fit_fine(f, &o->axis[x], lane, weight, !(f->finer >> lane & 1), room);
+    r.part = room;
+    r.parts = FIT_FINE;
+    return r;
+}
+
+static void add_vector(struct wide_overlap *o, const struct part_run *r, const struct lit *l) {
+    const struct wide_axis *a = &o->axis[0];
+    float done = 0;
+    for (uint32_t at = 0; at < r->count; at += part_step(a))
+        add_shares(o->scalar.sums, r->first + at, r->count - at, l, part_shares(a, r, at, &done));
+}
+
+static void add_split(struct wide_overlap *o, const struct wide_fit *f, const struct wide_nodes *n,
+                      uint32_t lane, const double light[OVERLAP_CHANNELS]) {
+    struct overlap *s = &o->scalar;
+    wide_split_add(o, 0, n, lane, f->gamma);
+    for (uint32_t j = s->touched[0].first; j < s->touched[0].end; j++) {
+        for (int c = 0; c < OVERLAP_CHANNELS; c++)
+            s->sums[j * OVERLAP_CHANNELS + (uint32_t)c] += light[c] * s->margin[0][j];
+        s->margin[0][j] = 0;
+    }
+    s->touched[0] = (struct overlap_range){0, 0};
+}
+
+// ---- two curves ---------------------------------------------------------------------------------
+
+// Shares of each part in functions of an axis from `at` on.
+static void find_rows(const struct wide_axis *a, const struct part_run *r, uint32_t at,
+                      float done[FIT_FINE], wide rows[FIT_FINE]) {
+    struct part_run one = *r;
+    one.parts = 1;
+    for (uint32_t p = 0; p < r->parts; p++) {
+        one.part = &r->part[p];
+        rows[p] = part_shares(a, &one, at, &done[p]);
     }
 }
 
-static void add_hats(const struct overlap_axis *a, const struct slopes *s, uint32_t last, bool from_0,
-                     struct shares *out) {
-    const double *k = a->basis.knots;
-    const bool ends = a->gamma.kind == GAMMA_THETA_R && last + 1 == basis_intervals(&a->basis);
-    const wide start = wide_of((float)k[out->first]), none = wide_of(0);
-    wide F = from_0 ? below(s, start) : none, I = integral_below(s, start);
-    for (uint32_t i = out->first; i <= last; i++) {
-        const wide end = wide_of((float)k[i + 1]);
-        const wide F1 = below(s, end), I1 = integral_below(s, end);
-        const wide mean = (I1 - I) * (float)(1 / (k[i + 1] - k[i]));
-        const wide beyond = i == last && !ends ? 1 - F1 : none;
-        wide *share = &out->share[i - out->first];
-        share[0] += s->part * wide_max(mean - F, none);
-        share[1] += s->part * (wide_max(F1 - mean, none) + beyond);
-        F = F1;
-        I = I1;
-    }
-}
-
-static void add_upper(const struct overlap_axis *a, const struct slopes *s, uint32_t last, bool from_0,
-                      struct shares *out) {
-    if (a->basis.kind == BASIS_HAT)
-        add_hats(a, s, last, from_0, out);
-    else
-        add_boxes(a, s, last, from_0, out);
-}
-
-// The quadratic through the nodes at the corners of all parts.
-static void interpolate(const float g[OVERLAP_NODES], wide out[3]) {
-    const float c3 = 2 * (g[1] + g[0]) - 4 * g[3], c5 = 2 * (g[2] + g[0]) - 4 * g[5];
-    const float c1 = g[1] - g[0] - c3, c2 = g[2] - g[0] - c5;
-    const float c4 = 4 * (g[4] - g[0] - 0.5f * (c1 + c2)) - c3 - c5;
-    for (int i = 0; i < 3; i++)
-        out[i] = g[0] + b1[i] * (c1 + c3 * b1[i] + c4 * b2[i]) + b2[i] * (c2 + c5 * b2[i]);
-}
-
-// false: the scalar way.
-static bool deal(const struct overlap_axis *a, const double gamma[OVERLAP_NODES], wide part,
-                 struct shares *out) {
-    float g[OVERLAP_NODES], least, most, bend = 0;
-    const float sign = gamma[0] + gamma[1] + gamma[2] < 0 ? -1 : 1; // so that most of it is positive
-    for (int i = 0; i < OVERLAP_NODES; i++)
-        g[i] = sign * (float)gamma[i];
-    least = most = g[0];
-    for (int i = 1; i < OVERLAP_NODES; i++) {
-        least = minf(least, g[i]);
-        most = maxf(most, g[i]);
-    }
-    for (int i = 0; i < 3; i++)
-        bend = maxf(bend, fabsf(g[3 + i] - 0.5f * (g[i] + g[(i + 1) % 3])));
-    if (bend > MOST_BEND * (most - least))
-        return false;
-    const bool straddles = least < 0;
-    const uint32_t last = overlap_interval(a, (double)maxf(most + 0.25f * bend, -least));
-    out->first = straddles ? 0 : overlap_interval(a, (double)(least - 0.25f * bend));
-    out->count = last - out->first + 1 + (a->basis.kind == BASIS_HAT);
-    if (out->count > MOST)
-        return false;
-    wide c[3];
-    interpolate(g, c);
-    for (uint32_t i = 0; i < out->count; i++)
-        out->share[i] = wide_of(0);
-    const struct slopes s = slopes_of(c[0], c[1], c[2], part);
-    add_upper(a, &s, last, straddles, out);
-    if (straddles) {
-        const struct slopes m = slopes_of(-c[0], -c[1], -c[2], part);
-        add_upper(a, &m, last, true, out);
-    }
-    return true;
-}
-
-static float sum_of(wide a) {
-#if defined(__AVX512F__)
-    return _mm512_reduce_add_ps((__m512)a);
-#else
-    float sum = 0;
-    for (int i = 0; i < WIDE_LANES; i++)
-        sum += a[i];
-    return sum;
-#endif
-}
-
-static void add_one(double *sum, const double light[OVERLAP_CHANNELS], double share) {
-    for (int c = 0; c < OVERLAP_CHANNELS; c++)
-        sum[c] += light[c] * share;
-}
-
-// Both curves, where one of them bends too much: each alone as with one curve.
-static void add_fitted(struct overlap *o, const struct overlap_triangle *t,
-                       double gamma[OVERLAP_AXES][OVERLAP_NODES], wide part,
-                       const double light[OVERLAP_CHANNELS]) {
-    for (uint32_t x = 0; x < OVERLAP_AXES; x++) {
-        struct shares s;
-        if (!deal(&o->axis[x], gamma[x], part, &s)) {
-            overlap_add_alone(o, x, t, gamma);
-            continue;
+// Calls `add` with the products of shares, [row][16 columns].
+static void find_products(struct wide_overlap *o, const struct part_run *a, const struct part_run *b,
+                          const struct lit *l, void (*add)(struct wide_overlap *o, size_t at, uint32_t count,
+                                                           const struct lit *l, wide product)) {
+    float done_a[FIT_FINE] = {0};
+    wide rows[FIT_FINE], columns[FIT_FINE];
+    for (uint32_t i = 0; i < a->count; i += part_step(&o->axis[0])) {
+        float done_b[FIT_FINE] = {0};
+        find_rows(&o->axis[0], a, i, done_a, rows);
+        for (uint32_t p = 0; p < a->parts; p++)
+            rows[p] *= 1 / b->part[p].weight; // it is in both
+        for (uint32_t k = 0; k < b->count; k += part_step(&o->axis[1])) {
+            find_rows(&o->axis[1], b, k, done_b, columns);
+            for (uint32_t j = 0; j < part_step(&o->axis[0]) && i + j < a->count; j++) {
+                wide product = wide_of(0);
+                for (uint32_t p = 0; p < a->parts; p++)
+                    product += rows[p][j] * columns[p];
+                add(o, (a->first + i + j) * (size_t)o->scalar.axis[1].basis.count + b->first + k,
+                    b->count - k, l, product);
+            }
         }
-        for (uint32_t i = 0; i < s.count; i++)
-            o->margin[x][s.first + i] = (double)sum_of(s.share[i]);
-        overlap_touch(o, x, s.first, s.first + s.count);
     }
-    overlap_add_fitted(o, t, gamma, light);
 }
 
-void wide_overlap_add(struct overlap *o, const struct overlap_triangle *t,
-                      double gamma[OVERLAP_AXES][OVERLAP_NODES],
+static void add_lit(struct wide_overlap *o, size_t at, uint32_t count, const struct lit *l, wide product) {
+    add_shares(o->scalar.sums, at, count, l, product);
+}
+
+static void add_joint(struct wide_overlap *o, size_t at, uint32_t count, const struct lit *l, wide product) {
+    (void)l;
+    for (uint32_t c = 0; c < WIDE_LANES && c < count; c++)
+        o->scalar.joint[at + c] += (double)product[c];
+}
+
+// One of them bends too much: each alone as with one curve, and both brought to that.
+static void add_fitted(struct wide_overlap *o, const struct wide_fit fit[OVERLAP_AXES],
+                       const struct wide_nodes *n, uint32_t lane, const struct overlap_triangle *t,
+                       const double light[OVERLAP_CHANNELS]) {
+    struct part room[OVERLAP_AXES][FIT_FINE];
+    struct part_run r[OVERLAP_AXES];
+    for (uint32_t x = 0; x < OVERLAP_AXES; x++) {
+        const struct wide_fit *f = &fit[x];
+        if (f->splits >> lane & 1) {
+            wide_split_add(o, x, n, lane, f->gamma);
+        } else {
+            r[0] = run_of(o, 0, f, n, lane, f->finer >> lane & 1, room[0]);
+            wide_margin_add(o, x, &r[0]);
+        }
+    }
+    if ((fit[0].far | fit[1].far) >> lane & 1) {
+        double gamma[OVERLAP_AXES][OVERLAP_NODES];
+        for (uint32_t x = 0; x < OVERLAP_AXES; x++)
+            for (int i = 0; i < OVERLAP_NODES; i++)
+                gamma[x][i] = (double)fit[x].gamma[i][lane];
+        overlap_add_joint(&o->scalar, t, gamma);
+    } else {
+        for (uint32_t x = 0; x < OVERLAP_AXES; x++)
+            r[x] = run_of(o, x, &fit[x], n, lane, true, room[x]);
+        for (uint32_t x = 0; x < OVERLAP_AXES; x++)
+            overlap_touch(&o->scalar, x, r[x].first, r[x].first + r[x].count);
+        find_products(o, &r[0], &r[1], NULL, add_joint);
+    }
+    overlap_finish_joint(&o->scalar, light);
+}
+
+void wide_overlap_add(struct wide_overlap *o, const struct wide_fit fit[OVERLAP_AXES],
+                      const struct wide_nodes *n, uint32_t lane, const struct overlap_triangle *t,
                       const double light[OVERLAP_CHANNELS]) {
-    struct shares a, b;
-    wide part;
-    for (int i = 0; i < WIDE_LANES; i++)
-        part[i] = (float)(0.25 * t->part[i / 4]);
-    if (o->axes == 0) {
-        add_one(o->sums, light, 1);
-        return;
-    }
-    if (!deal(&o->axis[0], gamma[0], part, &a) ||
-        (o->axes > 1 && !deal(&o->axis[1], gamma[1], wide_of(1), &b))) {
-        if (o->axes > 1)
-            add_fitted(o, t, gamma, part, light);
+    const uint32_t axes = o->scalar.axes;
+    const uint32_t splits = (axes > 0 ? fit[0].splits : 0) | (axes > 1 ? fit[1].splits : 0);
+    const uint32_t finer = (axes > 0 ? fit[0].finer : 0) | (axes > 1 ? fit[1].finer : 0);
+    const struct lit l = lit_of(light);
+    struct part room[OVERLAP_AXES][FIT_FINE];
+    struct part_run r[OVERLAP_AXES];
+    if (splits >> lane & 1) {
+        o->scalar.tolerance = (double)n->tolerance[lane];
+        if (axes == 1)
+            add_split(o, fit, n, lane, light);
         else
-            overlap_add(o, t, gamma, light);
+            add_fitted(o, fit, n, lane, t, light);
         return;
     }
-    for (uint32_t j = 0; j < a.count && o->axes == 1; j++)
-        add_one(o->sums + (a.first + j) * OVERLAP_CHANNELS, light, (double)sum_of(a.share[j]));
-    for (uint32_t j = 0; j < a.count && o->axes > 1; j++)
-        for (uint32_t k = 0; k < b.count; k++)
-            add_one(o->sums + ((size_t)(a.first + j) * o->axis[1].basis.count + b.first + k) *
-                                  OVERLAP_CHANNELS,
-                    light, (double)sum_of(a.share[j] * b.share[k]));
+    for (uint32_t x = 0; x < axes; x++)
+        r[x] = run_of(o, x, &fit[x], n, lane, finer >> lane & 1, room[x]);
+    if (axes == 0)
+        for (int c = 0; c < OVERLAP_CHANNELS; c++)
+            o->scalar.sums[c] += light[c];
+    else if (axes == 1)
+        add_vector(o, &r[0], &l);
+    else
+        find_products(o, &r[0], &r[1], &l, add_lit);
 }
