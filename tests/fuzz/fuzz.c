@@ -45,6 +45,7 @@ struct fuzz {
     uint64_t seed;
     const char **files;
     int file_count;
+    int suspect; // the case that hung once; -1: none
     unsigned char *outcomes; // shared with the children
     char directory[64], message_path[128];
 };
@@ -144,7 +145,7 @@ static void keep_messages(const struct fuzz *f, int i) {
 }
 
 // Runs cases from `first` on in one child; returns the first one that is still to be done.
-static int fork_batch(const struct fuzz *f, int first, int end) {
+static int fork_batch(struct fuzz *f, int first, int end) {
     fflush(NULL);
     const pid_t child = fork();
     if (child == 0)
@@ -162,7 +163,12 @@ static int fork_batch(const struct fuzz *f, int first, int end) {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 2)
         exit(2);
     const int death = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    f->outcomes[i] = death == SIGALRM || death == SIGPROF ? HUNG : CRASHED;
+    const bool hung = death == SIGALRM || death == SIGPROF;
+    if (hung && i != f->suspect) { // the machine may have stopped all that runs: once more
+        f->suspect = i;
+        return i;
+    }
+    f->outcomes[i] = hung ? HUNG : CRASHED;
     keep_messages(f, i);
     return i + 1;
 }
@@ -211,7 +217,7 @@ static int report(const struct fuzz *f) {
 }
 
 int fuzz_main(int argc, char **argv, const char *name, fuzz_reader read) {
-    struct fuzz f = {.name = name, .read = read};
+    struct fuzz f = {.name = name, .read = read, .suspect = -1};
     parse(&f, argc, argv);
     if (f.file_count == 0) {
         printf("%s: no file to start from\n", name);
