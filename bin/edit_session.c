@@ -17,7 +17,8 @@ void edit_session_help(void) {
         "             {\"reset\": \"cup\"}]}\n"
         "  A step makes its changes, then `frames` pictures (1); with `settle` until they are exact.\n"
         "  `write`: the last one goes to OUT.0001.exr, with the number of the step. `focus` freezes\n"
-        "  what is not edited, `terms` is the most coefficients a frame may change (0: all).\n");
+        "  what is not edited (of all curves, one or two are edited at a time: between two pictures, or in\n"
+        "  turn), `terms` is the most coefficients a frame may change (0: all).\n");
 }
 
 static bool write_numbered(const struct edit_session *s, size_t step, const float *frame) {

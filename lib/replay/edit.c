@@ -14,8 +14,11 @@ struct edit {
     struct edit_stage whole, rest; // the tensor, and what a focus leaves of it
     struct edit_focus focus;
     bool focused;
-    bool touched, scattered;     // since the last frame; not one curve alone
-    struct edit_touch touch;     // if not scattered
+    struct focus_curve left;     // where the focus was before, if it was
+    bool was_elsewhere;
+    struct focus_curve touched[FOCUS_MOST]; // since the last frame
+    uint32_t touch_count;
+    bool scattered;              // more was touched
     double (*factors)[CURVE_CHANNELS], (*groups)[CURVE_CHANNELS];
     float *scale;
     float **pixel;               // per block, or NULL
@@ -114,16 +117,28 @@ static bool reaches_weights(const struct edit_tensor *o, const struct edit_touch
     return false;
 }
 
+static void touch(struct edit *e, struct focus_curve c) {
+    if (focus_has(e->touched, e->touch_count, c))
+        return;
+    for (uint32_t k = 0; k < e->touch_count; k++)
+        if (focus_has(&c, 1, e->touched[k])) {
+            e->touched[k] = c;
+            return;
+        }
+    if (e->touch_count < FOCUS_MOST)
+        e->touched[e->touch_count++] = c;
+    else
+        e->scattered = true;
+}
+
 bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const char *at) {
     struct edit_touch t;
     if (!edit_apply(&e->objects, kind, text, at, &t))
         return false;
     if (!reaches_weights(&e->objects, &t))
         return true;
-    e->scattered = e->scattered || t.several ||
-                   (e->touched && (t.object != e->touch.object || t.curve != e->touch.curve));
-    e->touched = true;
-    e->touch = t;
+    touch(e, (struct focus_curve){t.object, t.curve});
+    e->scattered = e->scattered || t.several;
     return true;
 }
 
@@ -171,13 +186,13 @@ static void prepare_updates(struct edit *e) {
     }
 }
 
-static bool move_focus(struct edit *e, uint32_t object, uint32_t curve) {
+static bool move_focus(struct edit *e, const struct focus_curve *curves, uint32_t count) {
     const struct tensor *t = e->objects.tensor;
     const struct replay_options replay = replay_options_of(e);
     const double start = time_seconds();
     struct tensor rest = *t;
     drop_focus(e);
-    edit_focus_init(&e->focus, &e->objects, object, curve);
+    edit_focus_init(&e->focus, &e->objects, curves, count);
     rest.blocks = arena_alloc(&e->focus.arena, (t->block_count + 1) * sizeof *rest.blocks);
     e->rest.tensor = rest;
     e->rest.blocks = mem_array(t->block_count, sizeof *e->rest.blocks);
@@ -192,18 +207,33 @@ static bool move_focus(struct edit *e, uint32_t object, uint32_t curve) {
     return good;
 }
 
-// The focus goes to what was touched since the last frame, if that is one curve.
+// To what was touched; to both where that is the curve which the focus has just left.
+static bool follow_touch(struct edit *e) {
+    const struct edit_focus *f = &e->focus;
+    struct focus_curve to[FOCUS_MOST] = {e->touched[0], e->touched[1]};
+    uint32_t count = e->touch_count;
+    const bool alone = e->focused && f->curve_count == 1 && count == 1;
+    const struct focus_curve from = f->curves[0];
+    if (alone && e->was_elsewhere && focus_has(&e->left, 1, to[0]) && !focus_has(to, 1, from))
+        to[count++] = from;
+    e->was_elsewhere = alone && count == 1;
+    e->left = from;
+    return move_focus(e, to, count);
+}
+
+// The focus goes to what was touched since the last frame, if that is no more than two curves.
 static bool choose_focus(struct edit *e) {
-    const bool same = e->focused && e->focus.object == e->touch.object &&
-                      (e->focus.curve == e->touch.curve || e->touch.curve == EDIT_NOTHING);
-    bool good = true;
-    if (!e->options.focus || !e->touched)
+    bool same = e->focused, good = true;
+    if (!e->options.focus || (e->touch_count == 0 && !e->scattered))
         return true;
+    for (uint32_t k = 0; k < e->touch_count; k++)
+        same = same && focus_has(e->focus.curves, e->focus.curve_count, e->touched[k]);
     if (e->scattered)
         drop_focus(e);
     else if (!same)
-        good = move_focus(e, e->touch.object, e->touch.curve);
-    e->touched = e->scattered = false;
+        good = follow_touch(e);
+    e->touch_count = 0;
+    e->scattered = false;
     return good;
 }
 

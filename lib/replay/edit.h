@@ -2,8 +2,9 @@
 // An editing session over an edit tensor: changes go in, pictures come out.
 //
 // Without focus a frame is a full product of every block whose weights changed, right for any tensor
-// and any edit. A focus on one curve of an object contracts all else first (replay/edit_focus.h), so
-// that frames cost what that curve costs; it moves by itself to where changes happen. With `terms`
+// and any edit. A focus on one curve of an object, or on two, contracts all else first
+// (replay/edit_focus.h), so that frames cost what those curves cost; it moves by itself to where changes
+// happen: to two curves where both change between frames, or in turn. With `terms`
 // frames are updated by that many wavelet coefficients each (curve/incremental.h) and are exact once
 // changes pause; sums are then made anew, so that rounding does not add up.
 #pragma once

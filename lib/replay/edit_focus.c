@@ -46,18 +46,20 @@ static uint32_t find_power(struct edit_focus *f, struct power_table *t, const st
     return f->power_count - 1;
 }
 
-void edit_focus_init(struct edit_focus *f, const struct edit_tensor *e, uint32_t object,
-                     uint32_t curve) {
+void edit_focus_init(struct edit_focus *f, const struct edit_tensor *e,
+                     const struct focus_curve *curves, uint32_t count) {
     struct power_table table = {.mask = 1};
     while (table.mask < 2 * (size_t)e->group_count)
         table.mask = 2 * table.mask + 1;
     table.slot = mem_array(table.mask + 1, sizeof *table.slot);
-    *f = (struct edit_focus){.object = object, .curve = curve};
+    *f = (struct edit_focus){.curve_count = count};
+    memcpy(f->curves, curves, count * sizeof *curves);
     f->active = arena_alloc(&f->arena, (e->factor_count + 1) * sizeof *f->active);
     f->powers = arena_alloc(&f->arena, e->group_count * sizeof *f->powers);
     f->power_of = arena_alloc(&f->arena, e->group_count * sizeof *f->power_of);
     for (uint32_t i = 0; i < e->factor_count; i++)
-        f->active[i] = edit_factor_has(&e->factors[i], object);
+        for (uint32_t k = 0; k < count; k++)
+            f->active[i] |= edit_factor_has(&e->factors[i], curves[k].object);
     for (uint32_t g = 0; g < e->group_count; g++) {
         uint32_t scratch[EDITED_MOST_POWER + 1];
         const struct edited_group part = active_part(f, &e->groups[g], scratch);
@@ -71,14 +73,21 @@ void edit_focus_finish(struct edit_focus *f) {
     *f = (struct edit_focus){0};
 }
 
+bool focus_has(const struct focus_curve *curves, uint32_t count, struct focus_curve c) {
+    for (uint32_t k = 0; k < count; k++)
+        if (curves[k].object == c.object && (curves[k].curve == c.curve || c.curve == EDIT_NOTHING))
+            return true;
+    return false;
+}
+
 // ---- blocks -------------------------------------------------------------------------------------
 
 unsigned edit_focus_axes(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block) {
     unsigned axes = 0;
-    if (e->blocks[block].object != f->object || f->curve == EDIT_NOTHING)
-        return 0;
-    for (uint32_t i = 0; i < e->tensor->blocks[block].axis_count; i++)
-        axes |= (unsigned)(edit_axis_curve(e, block, i) == f->curve) << i;
+    for (uint32_t k = 0; k < f->curve_count; k++)
+        for (uint32_t i = 0; i < e->tensor->blocks[block].axis_count; i++)
+            axes |= (unsigned)(e->blocks[block].object == f->curves[k].object &&
+                               edit_axis_curve(e, block, i) == f->curves[k].curve) << i;
     return axes;
 }
 

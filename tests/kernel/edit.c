@@ -72,7 +72,7 @@ static void all_ways_agree(const struct sample_options *o, const char *what) {
             if (i > 0)
                 change(e[w], &same);
             if (i % 7 == 6)
-                change(e[w], &same); // two changes: no focus, or the same one
+                change(e[w], &same); // two changes: a focus on one curve or on two, or none
             CHECK((ways[w].terms ? edit_settle(e[w], frame[w]) : edit_frame(e[w], frame[w])) &&
                   edit_is_exact(e[w]));
             worst = fmax(worst, distance(e[w], frame[w]));
@@ -170,16 +170,46 @@ static void freezing_leaves_little(void) {
     struct edit_tensor e;
     struct edit_focus f;
     CHECK(edit_tensor_init(&e, &t, "test"));
-    edit_focus_init(&f, &e, 0, 1); // pot.lid, f_B
+    edit_focus_init(&f, &e, &(struct focus_curve){0, 1}, 1); // pot.lid, f_B
     // 1, d, D, d^2, dD: D is a sum that the object has a part in
     CHECK(f.power_count == 5 && f.powers[0].count == 0 && f.powers[3].count == 2);
     CHECK(edit_focus_coefficients(&f, &e, 0) == 5 * 8 && edit_focus_axes(&f, &e, 0) == 2);
     CHECK(edit_focus_coefficients(&f, &e, 1) == 5 && edit_focus_coefficients(&f, &e, 3) == 5);
     edit_focus_finish(&f);
-    edit_focus_init(&f, &e, 1, EDIT_NOTHING);
+    edit_focus_init(&f, &e, &(struct focus_curve){1, EDIT_NOTHING}, 1);
     CHECK(f.power_count == 3 && edit_focus_coefficients(&f, &e, 0) == 3); // 1, D, and D times another
     edit_focus_finish(&f);
     edit_tensor_finish(&e);
+    json_destroy((struct json *)(uintptr_t)t.meta);
+    arena_finish(&arena);
+}
+
+// Two objects between frames, or in turn: the focus is on both, and does not move to and fro.
+static void two_objects_are_unfrozen(void) {
+    static const char *const both[] = {"cup.specular.f_A:amplify-y,0,0,90,90,1.1",
+                                       "pot.lid.specular.f_A:amplify-y,0,0,90,90,0.9"};
+    const struct sample_options o = {.polynomial = true};
+    struct arena arena = {0};
+    const struct tensor t = sample_make(&o, &arena);
+    static float frame[3 * PIXELS];
+    for (int in_turn = 0; in_turn < 2; in_turn++) {
+        struct edit *e = edit_create(&t, "test", &(struct edit_settings){.no_device = true, .focus = true});
+        CHECK(edit_frame(e, frame));
+        const uint64_t whole = edit_last_cost(e).coefficients;
+        double moved = 0;
+        for (int i = 0; i < 12; i++) {
+            CHECK(edit_change(e, EDIT_OPERATE, both[i % 2], "test"));
+            if (!in_turn)
+                CHECK(edit_change(e, EDIT_OPERATE, both[(i + 1) % 2], "test"));
+            CHECK(edit_frame(e, frame) && distance(e, frame) < 1e-5);
+            moved = i == 2 ? edit_last_cost(e).switch_seconds : moved; // the last time it moves
+        }
+        CHECK(moved > 0 && edit_last_cost(e).switch_seconds == moved);
+        CHECK(edit_last_cost(e).coefficients > 0 && edit_last_cost(e).coefficients < whole);
+        printf("two objects unfrozen: %llu of %llu coefficients\n",
+               (unsigned long long)edit_last_cost(e).coefficients, (unsigned long long)whole);
+        edit_destroy(e);
+    }
     json_destroy((struct json *)(uintptr_t)t.meta);
     arena_finish(&arena);
 }
@@ -227,6 +257,7 @@ int main(void) {
     black_comes_back();
     freezing_leaves_little();
     updates_follow();
+    two_objects_are_unfrozen();
     wrong_changes_are_refused();
     return check_result();
 }
