@@ -39,6 +39,29 @@ static inline wide wide_load(const float v[WIDE_LANES]) {
     return w;
 }
 
+// Sixteen bytes as numbers.
+static inline wide wide_of_bytes(const uint8_t v[WIDE_LANES]) {
+#if defined(__AVX512F__)
+    return (wide)_mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128((const void *)v)));
+#else
+    wide w;
+    for (int i = 0; i < WIDE_LANES; i++)
+        w[i] = v[i];
+    return w;
+#endif
+}
+
+static inline wide wide_of_signed_bytes(const int8_t v[WIDE_LANES]) {
+#if defined(__AVX512F__)
+    return (wide)_mm512_cvtepi32_ps(_mm512_cvtepi8_epi32(_mm_loadu_si128((const void *)v)));
+#else
+    wide w;
+    for (int i = 0; i < WIDE_LANES; i++)
+        w[i] = v[i];
+    return w;
+#endif
+}
+
 // One bit a lane.
 static inline uint32_t wide_bits(wide_mask m) {
 #if defined(__AVX512F__)
