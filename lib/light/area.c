@@ -134,24 +134,23 @@ static uint32_t parts(const void *data) {
     return a->is_mesh ? area_mesh_parts(&a->mesh) : 1;
 }
 
-static bool part_sample(const void *data, uint32_t part, vec3 p, struct vec2 u,
-                        struct light_sample *s) {
+static void part_shape(const void *data, uint32_t part, struct light_leaf *leaf) {
+    area_mesh_part_shape(&((const struct area *)data)->mesh, part, leaf);
+}
+
+static bool part_sample(const void *data, uint32_t part, const struct light_leaf *leaf, vec3 p,
+                        struct vec2 u, struct light_sample *s) {
     const struct area *a = data;
     struct texture_point at = {0};
-    if (!area_mesh_part_sample(&a->mesh, part, p, u, s, a->radiance.texture ? &at : NULL))
+    if (!area_mesh_part_sample(&a->mesh, part, leaf, p, u, s, a->radiance.texture ? &at : NULL))
         return false;
     s->delta = false;
     s->emission = texture_eval(&a->radiance, &at);
     return true;
 }
 
-static void part_prefetch(const void *data, uint32_t part) {
-    area_mesh_prefetch(&((const struct area *)data)->mesh, part);
-}
-
-static float part_pdf_sa(const void *data, vec3 p, const struct light_hit *hit) {
-    (void)p;
-    return area_mesh_part_pdf_sa(&((const struct area *)data)->mesh, hit);
+static float part_pdf_sa(float inv_area, const struct light_hit *hit) {
+    return area_to_solid_angle(inv_area, hit->distance, fabsf(dot(hit->ng, hit->wi)));
 }
 
 // Mean luminance of the radiance over a triangle, from a few places. What lies between them may be
@@ -193,6 +192,6 @@ const struct light_type light_area = {
               .size = sizeof(struct area)},
     .prepare = prepare, .sample = sample, .sample_wide = sample_wide, .has_wide = has_wide,
     .emission = emission, .pdf_sa = pdf_sa, .power = power,
-    .bounds = bounds, .parts = parts, .part_sample = part_sample, .part_pdf_sa = part_pdf_sa,
-    .part_prefetch = part_prefetch, .finish = finish,
+    .bounds = bounds, .parts = parts, .part_shape = part_shape, .part_sample = part_sample,
+    .part_pdf_sa = part_pdf_sa, .finish = finish,
 };

@@ -3,6 +3,8 @@
 // where they are near, which removes the variance of distance and foreshortening.
 #include "light/area_shape.h"
 
+#include <string.h>
+
 #include "light/solid_angle.h"
 #include "math/warp.h"
 #include "math/wide_maps.h"
@@ -41,9 +43,13 @@ static bool opposes_normals(const struct mesh *m, uint32_t triangle, vec3 n) {
     return dot(sum, n) < 0;
 }
 
-static vec3 emitting_normal(const struct area_mesh *a, uint32_t triangle) {
-    const vec3 n = normalize(winding_cross(a->mesh, triangle));
+// n: of the winding.
+static vec3 emitting_side(const struct area_mesh *a, uint32_t triangle, vec3 n) {
     return (a->mixed && opposes_normals(a->mesh, triangle, n)) != a->flip ? -n : n;
+}
+
+static vec3 emitting_normal(const struct area_mesh *a, uint32_t triangle) {
+    return emitting_side(a, triangle, normalize(winding_cross(a->mesh, triangle)));
 }
 
 static bool near_point(vec3 a, vec3 b, float tolerance) {
@@ -127,17 +133,23 @@ static void fill_texture_point(const struct mesh *m, uint32_t triangle, struct v
     at->uv.y = b0 * t0[1] + b.x * t1[1] + b.y * t2[1];
 }
 
-static void place_on_triangle(const struct area_mesh *a, uint32_t triangle, struct vec2 b,
-                              struct light_sample *s, struct texture_point *at) {
-    const vec3 p0 = (1 - b.x - b.y) * vertex(a->mesh, triangle, 0);
-    const vec3 p1 = b.x * vertex(a->mesh, triangle, 1), p2 = b.y * vertex(a->mesh, triangle, 2);
+// From its corners.
+static void place_between(const struct area_mesh *a, uint32_t triangle, const vec3 v[3],
+                          struct vec2 b, struct light_sample *s, struct texture_point *at) {
+    const vec3 p0 = (1 - b.x - b.y) * v[0], p1 = b.x * v[1], p2 = b.y * v[2];
+    const vec3 e1 = v[1] - v[0], e2 = v[2] - v[0];
     s->p = p0 + p1 + p2;
-    const vec3 origin = vertex(a->mesh, triangle, 0);
-    s->p_error = triangle_error(p0, p1, p2, vertex(a->mesh, triangle, 1) - origin,
-                                vertex(a->mesh, triangle, 2) - origin);
-    s->n = a->kind == POLYGON_MESH ? emitting_normal(a, triangle) : a->n;
+    s->p_error = triangle_error(p0, p1, p2, e1, e2);
+    s->n = a->kind == POLYGON_MESH ? emitting_side(a, triangle, normalize(cross(e1, e2))) : a->n;
     if (at)
         fill_texture_point(a->mesh, triangle, b, at);
+}
+
+static void place_on_triangle(const struct area_mesh *a, uint32_t triangle, struct vec2 b,
+                              struct light_sample *s, struct texture_point *at) {
+    const vec3 v[3] = {vertex(a->mesh, triangle, 0), vertex(a->mesh, triangle, 1),
+                       vertex(a->mesh, triangle, 2)};
+    place_between(a, triangle, v, b, s, at);
 }
 
 // (x, y) in [0,1]^2 of the rectangle as a point of one of its triangles.
@@ -277,24 +289,19 @@ void area_mesh_place(const struct area_mesh *a, uint32_t triangle, struct vec2 b
     fill_texture_point(a->mesh, triangle, b, at);
 }
 
-bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle, vec3 p, struct vec2 u,
+void area_mesh_part_shape(const struct area_mesh *a, uint32_t triangle, struct light_leaf *leaf) {
+    leaf->inv_area = (float)(1 / triangle_area(a->mesh, triangle));
+    for (int k = 0; k < 3; k++)
+        memcpy(leaf->corner[k], a->mesh->positions[a->mesh->indices[triangle][k]],
+               sizeof leaf->corner[k]);
+}
+
+bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle,
+                           const struct light_leaf *leaf, vec3 p, struct vec2 u,
                            struct light_sample *s, struct texture_point *at) {
-    place_on_triangle(a, triangle, warp_triangle(u), s, at);
-    return area_finish_sample(p, (float)(1 / triangle_area(a->mesh, triangle)), s);
-}
-
-void area_mesh_prefetch(const struct area_mesh *a, uint32_t triangle) {
-    for (int k = 0; k < 3; k++) {
-        const uint32_t v = a->mesh->indices[triangle][k];
-        __builtin_prefetch(a->mesh->positions[v]);
-        if (a->mixed)
-            __builtin_prefetch(a->mesh->normals[v]);
-    }
-}
-
-float area_mesh_part_pdf_sa(const struct area_mesh *a, const struct light_hit *hit) {
-    return area_to_solid_angle((float)(1 / triangle_area(a->mesh, hit->at.triangle)), hit->distance,
-                               fabsf(dot(hit->ng, hit->wi)));
+    const vec3 v[3] = {v3_load(leaf->corner[0]), v3_load(leaf->corner[1]), v3_load(leaf->corner[2])};
+    place_between(a, triangle, v, warp_triangle(u), s, at);
+    return area_finish_sample(p, leaf->inv_area, s);
 }
 
 void area_mesh_bounds(const struct area_mesh *a, uint32_t part, struct light_bounds *b) {

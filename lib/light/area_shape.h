@@ -43,11 +43,10 @@ struct vec2 area_mesh_xy(const struct area_mesh *a, const struct texture_point *
 
 // Single triangles of a POLYGON_MESH, as above; a hit's is hit->at.triangle.
 uint32_t area_mesh_parts(const struct area_mesh *a);
-bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle, vec3 p, struct vec2 u,
+void area_mesh_part_shape(const struct area_mesh *a, uint32_t triangle, struct light_leaf *leaf);
+bool area_mesh_part_sample(const struct area_mesh *a, uint32_t triangle,
+                           const struct light_leaf *leaf, vec3 p, struct vec2 u,
                            struct light_sample *s, struct texture_point *at);
-float area_mesh_part_pdf_sa(const struct area_mesh *a, const struct light_hit *hit);
-// Sends for what sampling the triangle needs, without waiting for it.
-void area_mesh_prefetch(const struct area_mesh *a, uint32_t triangle);
 // For radiance 1; the intensity of a triangle without area is 0.
 void area_mesh_bounds(const struct area_mesh *a, uint32_t part, struct light_bounds *b);
 // Places that sample a triangle's texture, in barycentric coordinates.

@@ -76,15 +76,14 @@ struct light_type {
     float (*power)(const void *data);
     // Where a part stands and whither it shines, for choosing lights by the place they light. A
     // light of several parts (the triangles of a mesh) can be sampled by part: part_sample and
-    // part_pdf_sa are then sample and pdf_sa of one; that of a hit is hit->at.triangle. NULL parts:
-    // one. NULL bounds: it has no place.
+    // part_pdf_sa are then sample and pdf_sa of one, whose corners and area part_shape tells; that of
+    // a hit is hit->at.triangle. NULL parts: one. NULL bounds: it has no place.
     void (*bounds)(const void *data, uint32_t part, struct light_bounds *b);
     uint32_t (*parts)(const void *data);
-    bool (*part_sample)(const void *data, uint32_t part, vec3 p, struct vec2 u,
-                        struct light_sample *s);
-    float (*part_pdf_sa)(const void *data, vec3 p, const struct light_hit *hit);
-    // Sends for the memory that part_sample will need, without waiting for it. NULL: it is little.
-    void (*part_prefetch)(const void *data, uint32_t part);
+    void (*part_shape)(const void *data, uint32_t part, struct light_leaf *leaf);
+    bool (*part_sample)(const void *data, uint32_t part, const struct light_leaf *leaf, vec3 p,
+                        struct vec2 u, struct light_sample *s);
+    float (*part_pdf_sa)(float inv_area, const struct light_hit *hit);
     void (*finish)(void *data); // NULL: nothing to do
 };
 

@@ -14,33 +14,21 @@ static const float SLACK = 1e-2f;
 static const float LEAST_COSINE = 0.0625f;
 
 // So many stay in the cache of a core: nothing is sent for.
-enum { FEW_NODES = 256 };
-
-typedef uint16_t wide_u16 __attribute__((vector_size(32)));
-typedef int16_t wide_i16 __attribute__((vector_size(32)));
-
-static inline wide unsigned_lanes(const uint16_t v[WIDE_LANES]) {
-    wide_u16 x;
-    memcpy(&x, v, sizeof x);
-    return __builtin_convertvector(__builtin_convertvector(x, wide_int), wide);
-}
-
-static inline wide unit_lanes(const int16_t v[WIDE_LANES]) {
-    wide_i16 x;
-    memcpy(&x, v, sizeof x);
-    return __builtin_convertvector(__builtin_convertvector(x, wide_int), wide) * (1.0f / 32767);
-}
+enum { FEW_NODES = 512 };
 
 static inline wide intensity_lanes(const struct light_node *node) {
-    wide_u16 x;
-    memcpy(&x, node->intensity, sizeof x);
-    return (wide)(__builtin_convertvector(x, wide_uint) << 16);
+    const wide_uint code = __builtin_convertvector(wide_of_bytes(node->intensity), wide_uint);
+    return (wide)((code << 20) + (96u << 23));
 }
 
 static inline struct wide3 centre_lanes(const struct light_node *node) {
-    return (struct wide3){node->origin[0] + node->step * unsigned_lanes(node->centre[0]),
-                          node->origin[1] + node->step * unsigned_lanes(node->centre[1]),
-                          node->origin[2] + node->step * unsigned_lanes(node->centre[2])};
+    return (struct wide3){node->origin[0] + node->step * wide_of_bytes(node->centre[0]),
+                          node->origin[1] + node->step * wide_of_bytes(node->centre[1]),
+                          node->origin[2] + node->step * wide_of_bytes(node->centre[2])};
+}
+
+static inline wide axis_lanes(const int8_t v[WIDE_LANES]) {
+    return wide_of_signed_bytes(v) * (1.0f / 127);
 }
 
 // Upper bounds of what the children give: intensity x cosines / distance^2 over all points and
@@ -50,16 +38,17 @@ static inline struct wide3 centre_lanes(const struct light_node *node) {
 // the distance, so that no root waits for another.
 static inline wide importance(const struct light_node *node, const struct light_place *at) {
     const wide none = {0}, one = wide_of(1);
-    const wide cos_o = unit_lanes(node->cos_o), sin_o = wide_sqrt(1 - cos_o * cos_o);
-    const wide sin_b = node->radius_step * unsigned_lanes(node->radius), r2 = sin_b * sin_b;
+    const wide half = wide_of_bytes(node->spread) * (1.0f / 255), half2 = half * half;
+    const wide cos_o = 1 - 2 * half2, sin_o = 2 * half * wide_sqrt(wide_max(1 - half2, none));
+    const wide sin_b = node->radius_step * wide_of_bytes(node->radius), r2 = sin_b * sin_b;
     const struct wide3 d = wide3_sub(centre_lanes(node), wide3_of(at->p));
     const wide d2 = wide_dot(d, d);
     const wide_mask inside = d2 <= r2;
     const wide far2 = wide_select(inside, r2, d2), inv2 = 1 / far2;
     const wide cos_b = wide_sqrt(far2 - r2);
     // beyond o + b the light shines slantwise
-    const struct wide3 axis = {unit_lanes(node->axis[0]), unit_lanes(node->axis[1]),
-                               unit_lanes(node->axis[2])};
+    const struct wide3 axis = {axis_lanes(node->axis[0]), axis_lanes(node->axis[1]),
+                               axis_lanes(node->axis[2])};
     const wide cos_w = -wide_dot(d, axis);
     const wide sin_w = wide_sqrt(wide_max(d2 - cos_w * cos_w, none));
     const wide cos_ob = cos_o * cos_b - sin_o * sin_b, sin_ob = sin_o * cos_b + cos_o * sin_b;
@@ -74,7 +63,8 @@ static inline wide importance(const struct light_node *node, const struct light_
                                        (cos_n * cos_b + sin_n * sin_b) * inv2);
         value *= wide_max(cos_i, wide_of(LEAST_COSINE));
     }
-    const wide_mask dark = (cos_l < unit_lanes(node->cos_e) - SLACK) | (intensity <= 0);
+    const wide code = wide_of_bytes(node->intensity), cos_e = wide_of_bytes(node->cos_e) * (1.0f / 255);
+    const wide_mask dark = (cos_l < cos_e - SLACK) | (code <= 0);
     // at the very point of a light without size the product is infinite
     return wide_select(dark, none, wide_min(value * inv2, wide_of(1e36f)));
 }
@@ -83,10 +73,21 @@ static const double END = 0x1.fffffffffffffp-1; // the last number below 1
 
 typedef double double4 __attribute__((vector_size(32)));
 
-// Children are looked at as a table of four rows, a column first: fewer steps than one by one.
+static inline double4 doubles_of(float4 f) {
+#if defined(__AVX512F__)
+    return (double4)_mm256_cvtps_pd((__m128)f); // GCC 12 goes through memory
+#else
+    return __builtin_convertvector(f, double4);
+#endif
+}
+
+// Children are looked at as a table of four rows, a column first: fewer steps than one by one, and
+// no branch, of which the processor could not know where it goes.
 struct table {
     double row[4][4];
-    double column[4]; // sums up to and with each
+    double above[4][4]; // sums of the rows above
+    double left[4];     // sums of the columns on the left
+    double sum;
 };
 
 static inline struct table table_of(wide v) {
@@ -95,13 +96,16 @@ static inline struct table table_of(wide v) {
     double4 r[4];
     memcpy(f, &v, sizeof f);
     for (int j = 0; j < 4; j++)
-        r[j] = __builtin_convertvector(f[j], double4);
+        r[j] = doubles_of(f[j]);
+    const double4 two = r[0] + r[1], sum = two + (r[2] + r[3]);
+    const double4 above[4] = {{0}, r[0], two, two + r[2]};
     memcpy(t.row, r, sizeof r);
-    const double4 sum = (r[0] + r[1]) + (r[2] + r[3]);
-    t.column[0] = sum[0];
-    t.column[1] = sum[0] + sum[1];
-    t.column[2] = t.column[1] + sum[2];
-    t.column[3] = t.column[1] + (sum[2] + sum[3]);
+    memcpy(t.above, above, sizeof above);
+    t.left[0] = 0;
+    t.left[1] = sum[0];
+    t.left[2] = sum[0] + sum[1];
+    t.left[3] = t.left[2] + sum[2];
+    t.sum = t.left[2] + (sum[2] + sum[3]);
     return t;
 }
 
@@ -109,125 +113,152 @@ static inline double table_value(const struct table *t, int i) {
     return t->row[i / 4][i % 4];
 }
 
-// The child at *x in [0, sum), one of those above 0; *x becomes the place within it.
-static inline int table_choose(const struct table *t, double *x) {
-    const int k = (*x >= t->column[0]) + (*x >= t->column[1]) + (*x >= t->column[2]);
-    *x -= k > 0 ? t->column[k - 1] : 0;
-    const double a = t->row[0][k], b = a + t->row[1][k], c = b + t->row[2][k];
-    const int j = (*x >= a) + (*x >= b) + (*x >= c);
-    *x -= j > 1 ? j > 2 ? c : b : j > 0 ? a : 0;
-    if (t->row[j][k] > 0)
-        return 4 * j + k;
-    int last = 0; // by rounding, beyond the last
+// By rounding, beyond the last.
+static __attribute__((noinline)) int table_last(const struct table *t) {
+    int last = 0;
     for (int i = 0; i < WIDE_LANES; i++)
         last = table_value(t, i) > 0 ? i : last;
     return last;
+}
+
+// The child at *x in [0, sum), one of those above 0; *x becomes the place within it.
+static inline int table_choose(const struct table *t, double *x) {
+    const int k = (*x >= t->left[1]) + (*x >= t->left[2]) + (*x >= t->left[3]);
+    *x -= t->left[k];
+    const int j = (*x >= t->above[1][k]) + (*x >= t->above[2][k]) + (*x >= t->above[3][k]);
+    *x -= t->above[j][k];
+    return t->row[j][k] > 0 ? 4 * j + k : table_last(t);
 }
 
 // All lines of a node at once.
 static inline void prefetch_node(const struct light_node *node) {
     for (size_t k = 0; k < sizeof *node; k += 64)
         __builtin_prefetch((const char *)node + k);
-    __builtin_prefetch((const char *)(node + 1) - 1);
 }
 
 struct descent {
     double u, probability;
-    uint32_t child;
+    uint32_t node;
+    uint32_t slot; // of the item that was reached; LIGHT_TREE_NONE: on the way
+    bool lowest;   // the node has nothing but items
 };
 
 // One node further down. false: none of its children gives light.
 static inline bool descend(const struct light_tree *t, const struct light_place *at,
                            struct descent *d) {
-    const struct light_node *node = &t->nodes[d->child];
+    const struct light_node *node = &t->nodes[d->node];
     const struct table values = table_of(importance(node, at));
-    const double sum = values.column[3];
-    if (!(sum > 0))
+    if (!(values.sum > 0))
         return false;
-    double x = d->u * sum;
+    double x = d->u * values.sum;
     const int i = table_choose(&values, &x);
-    d->child = node->child[i];
+    d->slot = node->inner >> i & 1 ? LIGHT_TREE_NONE : WIDE_LANES * d->node + (uint32_t)i;
+    d->lowest = node->lowest >> i & 1;
+    d->node = node->first + (uint32_t)__builtin_popcount(node->inner & ((1u << i) - 1));
     x /= table_value(&values, i);
     d->u = x > 0 ? x < END ? x : END : 0;
-    d->probability *= table_value(&values, i) / sum;
+    d->probability *= table_value(&values, i) / values.sum;
     return true;
 }
 
+static inline struct descent descent_of(double u) {
+    return (struct descent){.u = u, .probability = 1, .slot = LIGHT_TREE_NONE};
+}
+
+// The items of a node that has nothing else, before it is looked at itself.
+static inline void prefetch_leaves(const struct light_tree *t, uint32_t node) {
+    const char *leaves = (const char *)&t->leaves[WIDE_LANES * (size_t)node];
+    for (size_t k = 0; k < WIDE_LANES * sizeof *t->leaves; k += 64)
+        __builtin_prefetch(leaves + k);
+}
+
 bool light_tree_choose(const struct light_tree *t, const struct light_place *at, double u,
-                       uint32_t *item, float *pmf) {
-    struct descent d = {.u = u, .probability = 1};
+                       const struct light_leaf **leaf, float *pmf) {
+    struct descent d = descent_of(u);
     if (t->node_count == 0)
         return false;
-    while (!(d.child & LIGHT_TREE_LEAF))
+    while (d.slot == LIGHT_TREE_NONE) {
         if (!descend(t, at, &d))
             return false;
-    *item = d.child - LIGHT_TREE_LEAF;
+        if (d.lowest && t->node_count > FEW_NODES)
+            prefetch_leaves(t, d.node);
+    }
+    *leaf = &t->leaves[d.slot];
     *pmf = (float)d.probability;
     return *pmf > 0;
 }
 
 uint32_t light_tree_choose_lanes(const struct light_tree *t, uint32_t wanted,
                                  const struct light_place at[WIDE_LANES],
-                                 const double u[WIDE_LANES], uint32_t item[WIDE_LANES],
+                                 const double u[WIDE_LANES],
+                                 const struct light_leaf *leaf[WIDE_LANES],
                                  float pmf[WIDE_LANES]) {
     struct descent d[WIDE_LANES];
     uint32_t found = 0;
     for (int i = 0; i < WIDE_LANES; i++)
-        d[i] = (struct descent){.u = u[i], .probability = 1};
+        d[i] = descent_of(u[i]);
     for (uint32_t going = t->node_count ? wanted : 0; going;)
         for (uint32_t left = going; left; left &= left - 1) {
             const int i = __builtin_ctz(left);
             const bool lit = descend(t, &at[i], &d[i]);
-            if (lit && !(d[i].child & LIGHT_TREE_LEAF)) {
+            if (lit && d[i].slot == LIGHT_TREE_NONE) {
                 if (t->node_count > FEW_NODES)
-                    prefetch_node(&t->nodes[d[i].child]);
+                    prefetch_node(&t->nodes[d[i].node]);
                 continue;
             }
             going &= ~(1u << i);
-            item[i] = d[i].child & ~LIGHT_TREE_LEAF;
+            if (!lit)
+                continue;
+            leaf[i] = &t->leaves[d[i].slot];
             pmf[i] = (float)d[i].probability;
-            found |= (uint32_t)(lit && pmf[i] > 0) << i;
+            found |= (uint32_t)(pmf[i] > 0) << i;
+            __builtin_prefetch(leaf[i]);
+            __builtin_prefetch((const char *)(leaf[i] + 1) - 1);
         }
     return found;
 }
 
+// The lowest two nodes; what is above them is mostly in the cache.
+static inline void prefetch_way(const struct light_tree *t, const struct light_slot *s) {
+    if (s->slot != LIGHT_TREE_NONE)
+        prefetch_node(&t->nodes[s->slot / WIDE_LANES]);
+    if (s->parent != LIGHT_TREE_NONE)
+        prefetch_node(&t->nodes[s->parent / WIDE_LANES]);
+}
+
 void light_tree_prefetch(const struct light_tree *t, const uint32_t *items, int count) {
-    uint32_t slot[WIDE_LANES];
     if (t->node_count <= FEW_NODES)
         return;
     for (int i = 0; i < count; i++)
-        slot[i] = t->slots[items[i]];
-    // level by level, since the way up waits for memory too
-    for (int going = count; going > 0;) {
-        const int were = going;
-        going = 0;
-        for (int i = 0; i < were; i++) {
-            if (slot[i] == LIGHT_TREE_NONE)
-                continue;
-            prefetch_node(&t->nodes[slot[i] / WIDE_LANES]);
-            slot[going++] = t->parents[slot[i] / WIDE_LANES];
-        }
-    }
+        __builtin_prefetch(&t->slots[items[i]]);
+    for (int i = 0; i < count; i++)
+        prefetch_way(t, &t->slots[items[i]]);
 }
 
+// From the lowest node up: of lights that turn away it knows so already.
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item) {
+    const struct light_slot *lowest = &t->slots[item];
     double probability = 1;
-    uint32_t slot = t->slots[item];
-    if (slot == LIGHT_TREE_NONE)
-        return 0;
-    for (; slot != LIGHT_TREE_NONE; slot = t->parents[slot / WIDE_LANES]) {
-        const struct table values = table_of(importance(&t->nodes[slot / WIDE_LANES], at));
-        const double value = table_value(&values, (int)(slot % WIDE_LANES));
+    if (t->node_count > FEW_NODES)
+        prefetch_way(t, lowest);
+    for (uint32_t s = lowest->slot; s != LIGHT_TREE_NONE; s = t->parents[s / WIDE_LANES]) {
+        const struct table values = table_of(importance(&t->nodes[s / WIDE_LANES], at));
+        const double value = table_value(&values, (int)(s % WIDE_LANES));
         if (!(value > 0))
             return 0;
-        probability *= value / values.column[3];
+        probability *= value / values.sum;
     }
-    return (float)probability;
+    return lowest->slot == LIGHT_TREE_NONE ? 0 : (float)probability;
+}
+
+struct light_leaf *light_tree_leaf(struct light_tree *t, uint32_t item) {
+    const uint32_t slot = t->slots[item].slot;
+    return slot == LIGHT_TREE_NONE ? NULL : &t->leaves[slot];
 }
 
 int light_tree_depth(const struct light_tree *t, uint32_t item) {
     int nodes = 0;
-    for (uint32_t s = t->slots[item]; s != LIGHT_TREE_NONE; s = t->parents[s / WIDE_LANES])
+    for (uint32_t s = t->slots[item].slot; s != LIGHT_TREE_NONE; s = t->parents[s / WIDE_LANES])
         nodes++;
     return nodes;
 }
@@ -235,11 +266,12 @@ int light_tree_depth(const struct light_tree *t, uint32_t item) {
 void light_tree_finish(struct light_tree *t) {
     mem_free(t->nodes);
     mem_free(t->parents);
+    mem_free(t->leaves);
     mem_free(t->slots);
     *t = (struct light_tree){0};
 }
 
 size_t light_tree_bytes(const struct light_tree *t) {
-    return t->node_count * (sizeof *t->nodes + sizeof *t->parents) +
+    return t->node_count * (sizeof *t->nodes + sizeof *t->parents + WIDE_LANES * sizeof *t->leaves) +
            t->item_count * sizeof *t->slots;
 }

@@ -12,6 +12,7 @@
 // here has a unit of its own: scenes that differ by a power of two give the same bits.
 #pragma once
 
+#include <stdalign.h>
 #include <stddef.h>
 
 #include "math/wide.h"
@@ -31,10 +32,26 @@ struct light_place {
     vec3 n; // unit: light from its other side counts little; zero: all sides count the same
 };
 
+// What a sample needs of an item it has chosen, in one place and beside those of the same node: each
+// place more would be a wait for memory more.
+struct light_leaf {
+    uint32_t item;
+    float inv_area;      // of a triangle, and its corners; filled by who has them
+    float corner[3][3];
+};
+
+// What the density of an item needs first.
+struct light_slot {
+    uint32_t slot;   // 16 x node + child, or LIGHT_TREE_NONE
+    uint32_t parent; // slot of that node
+    float inv_area;  // as above
+};
+
 struct light_tree {
-    struct light_node *nodes; // owned
-    uint32_t *parents;        // by node: 16 x node + child; of the root: LIGHT_TREE_NONE; owned
-    uint32_t *slots;          // by item: 16 x node + child; owned
+    struct light_node *nodes;  // owned
+    uint32_t *parents;         // by node: its slot; of the root: LIGHT_TREE_NONE; owned
+    struct light_leaf *leaves; // by slot; owned
+    struct light_slot *slots;  // by item; owned
     uint32_t node_count, item_count;
 };
 
@@ -45,34 +62,40 @@ size_t light_tree_bytes(const struct light_tree *t);
 
 // u in [0, 1) with as many bits as there are. false: no light reaches the place.
 bool light_tree_choose(const struct light_tree *t, const struct light_place *at, double u,
-                       uint32_t *item, float *pmf);
+                       const struct light_leaf **leaf, float *pmf);
 // The same, to the bit, for the lanes of `wanted`; returns those that found an item. They go down side
 // by side, so that while one is looked at, the nodes of the others are on their way from memory.
 uint32_t light_tree_choose_lanes(const struct light_tree *t, uint32_t wanted,
                                  const struct light_place at[WIDE_LANES],
-                                 const double u[WIDE_LANES], uint32_t item[WIDE_LANES],
-                                 float pmf[WIDE_LANES]);
+                                 const double u[WIDE_LANES],
+                                 const struct light_leaf *leaf[WIDE_LANES], float pmf[WIDE_LANES]);
 // The probability that choose finds the item.
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item);
 // Sends for the memory that light_tree_pmf will need, without waiting for it.
 // At most sixteen items.
 void light_tree_prefetch(const struct light_tree *t, const uint32_t *items, int count);
+// For who fills it with what the item is. NULL: it is not in the tree.
+struct light_leaf *light_tree_leaf(struct light_tree *t, uint32_t item);
 // Nodes that choose looks at to find the item.
 int light_tree_depth(const struct light_tree *t, uint32_t item);
 
 // ---- for building
 
-#define LIGHT_TREE_LEAF 0x80000000u // of a child: it is item child - LIGHT_TREE_LEAF
-#define LIGHT_TREE_NONE UINT32_MAX  // slot of an item that is not in the tree
+#define LIGHT_TREE_NONE UINT32_MAX // slot of an item that is not in the tree
 
-// Bounds of the children, a lane each, in 16 bits and rounded so that they hold what they bound.
-// Unused lanes have intensity 0.
+// Children of a node, a lane each, in bytes and rounded so that they hold what they bound: three
+// cache lines, and a few hundred kilobytes for all but the lowest nodes of a million lights, since a
+// choice mostly waits for memory. Those that are nodes follow one another.
 struct light_node {
-    float origin[3], step;                  // of the centres
+    alignas(64) float origin[3];
+    float step;         // of the centres
     float radius_step;
-    uint16_t centre[3][WIDE_LANES], radius[WIDE_LANES]; // of a sphere, in steps
-    int16_t axis[3][WIDE_LANES];            // 32767: 1
-    int16_t cos_o[WIDE_LANES], cos_e[WIDE_LANES];
-    uint16_t intensity[WIDE_LANES];         // upper half of a float
-    uint32_t child[WIDE_LANES];
+    uint32_t first;     // of the children that are nodes
+    uint16_t inner;     // bit a lane: the child is a node
+    uint16_t lowest;    // it is a node whose children are all items
+    uint8_t centre[3][WIDE_LANES], radius[WIDE_LANES]; // of a sphere, in steps
+    int8_t axis[3][WIDE_LANES];    // of length 127 at most
+    uint8_t spread[WIDE_LANES];    // 255: 1; sine of half the angle that the normals fill
+    uint8_t cos_e[WIDE_LANES];     // 255: 1
+    uint8_t intensity[WIDE_LANES]; // 5 bits of exponent, 3 of fraction; 0: none. The greatest is 255
 };

@@ -14,6 +14,9 @@ enum { LEAST_FOR_TREE = 8 };
 // A light is found from its part by a table of every 64th, which stays in the cache, and a search.
 enum { BLOCK = 64 };
 
+// Of what choose_part gives: it is a light, of the table.
+#define FROM_TABLE 0x80000000u
+
 const char *const light_choice_modes[] = {"auto", "tree", "power", "uniform", NULL};
 
 // ---- tables
@@ -51,7 +54,7 @@ static uint32_t count_parts(struct world_light *all, uint32_t count, bool *place
         *places |= type->bounds != NULL;
         parts += n;
     }
-    return parts < LIGHT_TREE_LEAF ? (uint32_t)parts : 0;
+    return parts < FROM_TABLE ? (uint32_t)parts : 0;
 }
 
 static size_t block_count(uint32_t parts) {
@@ -104,6 +107,18 @@ static void init_by_part(struct light_choice *c, bool uniform, const struct worl
 
 // ---- the tree and, apart, the lights without a place
 
+static void tell_shapes(struct light_tree *t, const struct world_light *all, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++)
+        for (uint32_t k = 0; k < all[i].parts; k++) {
+            const uint32_t part = all[i].first_part + k;
+            struct light_leaf *leaf = light_tree_leaf(t, part);
+            if (!leaf)
+                continue;
+            all[i].type->part_shape(all[i].data, k, leaf);
+            t->slots[part].inv_area = leaf->inv_area;
+        }
+}
+
 static void init_tree(struct light_choice *c, const struct world_light *all, uint32_t count,
                       const struct light_bounds *bounds, uint32_t parts) {
     float *weights = mem_array(count, sizeof *weights);
@@ -127,6 +142,7 @@ static void init_tree(struct light_choice *c, const struct world_light *all, uin
         alias_init(&c->table, weights, n);
     }
     light_tree_init(&c->tree, bounds, parts);
+    tell_shapes(&c->tree, all, count);
     c->has_tree = true;
     mem_free(weights);
 }
@@ -185,23 +201,36 @@ static double more_bits(float u1, struct vec2 u2) {
     return (double)u1 + 0x1p-24 * (0x1p-32 * (double)hash_u32(x ^ hash_u32(y)));
 }
 
+struct chosen {
+    uint32_t part;
+    const struct light_leaf *leaf; // NULL: it is not from the tree
+    float pmf;
+};
+
 static bool choose_part(const struct light_choice *c, const struct light_place *at, float u1,
-                        struct vec2 u2, uint32_t *part, float *pmf) {
-    const double u = more_bits(u1, u2);
+                        struct vec2 u2, struct chosen *out) {
+    const double u = more_bits(u1, u2), share = (double)c->table_share;
+    out->leaf = NULL;
     if (!c->has_tree) {
-        *part = alias_sample_fine(&c->table, u, pmf);
+        out->part = alias_sample_fine(&c->table, u, &out->pmf);
         return true;
     }
-    const double share = (double)c->table_share;
     if (u >= share) {
-        if (!light_tree_choose(&c->tree, at, (u - share) / (1 - share), part, pmf))
+        if (!light_tree_choose(&c->tree, at, (u - share) / (1 - share), &out->leaf, &out->pmf))
             return false;
-        *pmf *= 1 - c->table_share;
+        out->part = out->leaf->item;
+        out->pmf *= 1 - c->table_share;
         return true;
     }
-    *part = LIGHT_TREE_LEAF | c->table_light[alias_sample_fine(&c->table, u / share, pmf)];
-    *pmf *= c->table_share;
+    out->part = FROM_TABLE | c->table_light[alias_sample_fine(&c->table, u / share, &out->pmf)];
+    out->pmf *= c->table_share;
     return true;
+}
+
+static void set_part(struct light_parts *out, int i, const struct chosen *one) {
+    out->part[i] = one->part;
+    out->leaf[i] = one->leaf;
+    out->pmf[i] = one->pmf;
 }
 
 // As choose_part, lane by lane.
@@ -213,26 +242,31 @@ static uint32_t choose_parts(const struct light_choice *c, uint32_t wanted,
     uint32_t in_tree = 0, found = 0;
     for (uint32_t left = wanted; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
-        const struct vec2 one = {u2[0][i], u2[1][i]};
-        u[i] = more_bits(u1[i], one);
+        const struct vec2 two = {u2[0][i], u2[1][i]};
+        struct chosen one;
+        u[i] = more_bits(u1[i], two);
         if (c->has_tree && u[i] >= share) {
             u[i] = (u[i] - share) / (1 - share);
             in_tree |= 1u << i;
-        } else {
-            found |= (uint32_t)choose_part(c, &at[i], u1[i], one, &out->part[i], &out->pmf[i]) << i;
+        } else if (choose_part(c, &at[i], u1[i], two, &one)) {
+            set_part(out, i, &one);
+            found |= 1u << i;
         }
     }
-    in_tree = light_tree_choose_lanes(&c->tree, in_tree, at, u, out->part, out->pmf);
-    for (uint32_t left = in_tree; left; left &= left - 1)
-        out->pmf[__builtin_ctz(left)] *= 1 - c->table_share;
+    in_tree = light_tree_choose_lanes(&c->tree, in_tree, at, u, out->leaf, out->pmf);
+    for (uint32_t left = in_tree; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        out->part[i] = out->leaf[i]->item;
+        out->pmf[i] *= 1 - c->table_share;
+    }
     return found | in_tree;
 }
 
 // Of what choose_part gives.
 static uint32_t light_of(const struct light_choice *c, const struct world_light *all,
                          uint32_t part) {
-    if (part & LIGHT_TREE_LEAF)
-        return part & ~LIGHT_TREE_LEAF;
+    if (part & FROM_TABLE)
+        return part & ~FROM_TABLE;
     uint32_t low = c->block_light[part / BLOCK], high = c->block_light[part / BLOCK + 1];
     while (low < high) {
         const uint32_t middle = low + (high - low + 1) / 2;
@@ -244,15 +278,19 @@ static uint32_t light_of(const struct light_choice *c, const struct world_light 
     return low;
 }
 
-bool light_chosen_sample(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
-                         float pmf, struct light_sample *s) {
+bool light_chosen_sample(const struct world_light *l, uint32_t part, const struct light_leaf *leaf,
+                         vec3 p, struct vec2 u2, float pmf, struct light_sample *s) {
     bool lit;
-    if (l->type->aim)
+    if (l->type->aim) {
         lit = l->type->aim(l->data, u2, s);
-    else if (l->parts)
-        lit = l->type->part_sample(l->data, part - l->first_part, p, u2, s);
-    else
+    } else if (l->parts) {
+        struct light_leaf own;
+        if (!leaf)
+            l->type->part_shape(l->data, part - l->first_part, &own);
+        lit = l->type->part_sample(l->data, part - l->first_part, leaf ? leaf : &own, p, u2, s);
+    } else {
         lit = l->type->sample(l->data, p, u2, s);
+    }
     s->late = l->type->aim != NULL;
     s->pdf_sa *= pmf;
     return lit && s->pdf_sa > 0;
@@ -269,9 +307,7 @@ uint32_t light_choice_parts(const struct light_choice *c, const struct world_lig
     const uint32_t found = choose_parts(c, wanted, at, u1, u2, out);
     for (uint32_t left = found; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
-        const struct world_light *l = &all[out->light[i] = light_of(c, all, out->part[i])];
-        if (l->parts && l->type->part_prefetch)
-            l->type->part_prefetch(l->data, out->part[i] - l->first_part);
+        out->light[i] = light_of(c, all, out->part[i]);
     }
     return found;
 }
@@ -279,28 +315,37 @@ uint32_t light_choice_parts(const struct light_choice *c, const struct world_lig
 bool light_choice_sample(const struct light_choice *c, const struct world_light *all,
                          uint32_t count, const struct light_place *at, float u1, struct vec2 u2,
                          uint32_t *light, struct light_sample *s) {
-    float pmf = 1;
-    uint32_t part = 0;
+    struct chosen one = {.pmf = 1};
     *light = 0;
     if (count == 0)
         return false;
     if (c->by_part) {
-        if (!choose_part(c, at, u1, u2, &part, &pmf))
+        if (!choose_part(c, at, u1, u2, &one))
             return false;
-        *light = light_of(c, all, part);
+        *light = light_of(c, all, one.part);
     } else {
-        *light = light_choice_of_all(c, count, u1, &pmf);
+        *light = light_choice_of_all(c, count, u1, &one.pmf);
     }
-    return light_chosen_sample(&all[*light], part, at->p, u2, pmf, s);
+    return light_chosen_sample(&all[*light], one.part, one.leaf, at->p, u2, one.pmf, s);
+}
+
+// As sampled; of a triangle that is not in the tree none.
+static float part_pdf_sa(const struct light_choice *c, const struct world_light *light,
+                         uint32_t part, const struct light_hit *hit) {
+    struct light_leaf own;
+    if (c->has_tree)
+        return light->type->part_pdf_sa(c->tree.slots[part].inv_area, hit);
+    light->type->part_shape(light->data, hit->at.triangle, &own);
+    return light->type->part_pdf_sa(own.inv_area, hit);
 }
 
 float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,
                           const struct light_place *at, const struct light_hit *hit) {
-    const float pdf = light->parts ? light->type->part_pdf_sa(light->data, at->p, hit)
+    const uint32_t part = light->first_part + (light->parts ? hit->at.triangle : 0);
+    const float pdf = light->parts ? part_pdf_sa(c, light, part, hit)
                                    : light->type->pdf_sa(light->data, at->p, hit);
     if (!c->by_part || (c->has_tree && !light->type->bounds))
         return light->pmf * pdf;
-    const uint32_t part = light->first_part + (light->parts ? hit->at.triangle : 0);
     const float pmf = c->has_tree ? (1 - c->table_share) * light_tree_pmf(&c->tree, at, part)
                                   : c->table.entries[part].pmf;
     return pmf * pdf;

@@ -56,12 +56,14 @@ bool light_choice_sample(const struct light_choice *c, const struct world_light 
                          uint32_t *light, struct light_sample *s);
 // Its two steps where lights are not chosen by part: a light, and a point on it (first_part).
 uint32_t light_choice_of_all(const struct light_choice *c, uint32_t count, float u1, float *pmf);
-bool light_chosen_sample(const struct world_light *l, uint32_t part, vec3 p, struct vec2 u2,
-                         float pmf, struct light_sample *s);
+// leaf: what the tree knows of the part, or NULL.
+bool light_chosen_sample(const struct world_light *l, uint32_t part, const struct light_leaf *leaf,
+                         vec3 p, struct vec2 u2, float pmf, struct light_sample *s);
 // The first step for the lanes of `wanted`, where lights are chosen by part: those that found one,
-// with the bits of one at a time. The parts' memory is then on its way.
+// with the bits of one at a time.
 struct light_parts {
     uint32_t part[WIDE_LANES], light[WIDE_LANES];
+    const struct light_leaf *leaf[WIDE_LANES];
     float pmf[WIDE_LANES];
 };
 uint32_t light_choice_parts(const struct light_choice *c, const struct world_light *all,

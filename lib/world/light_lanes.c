@@ -45,7 +45,7 @@ static uint32_t sample_alone(const struct world_light *l, uint32_t lanes, const 
     for (uint32_t left = lanes; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         struct light_sample s;
-        if (!light_chosen_sample(l, l->first_part, wide3_lane(p, i),
+        if (!light_chosen_sample(l, l->first_part, NULL, wide3_lane(p, i),
                                  (struct vec2){u[0][i], u[1][i]}, pmf[i], &s))
             continue;
         set_sample(out, i, &s);
@@ -93,8 +93,8 @@ static uint32_t sample_parts(const struct world *w, uint32_t wanted, const struc
         const struct vec2 u = {u2[0][i], u2[1][i]};
         struct light_sample l;
         out->light[i] = chosen.light[i];
-        if (!light_chosen_sample(&w->lights[chosen.light[i]], chosen.part[i], at[i].p, u,
-                                 chosen.pmf[i], &l))
+        if (!light_chosen_sample(&w->lights[chosen.light[i]], chosen.part[i], chosen.leaf[i],
+                                 at[i].p, u, chosen.pmf[i], &l))
             continue;
         set_sample(out, i, &l);
         lit |= 1u << i;

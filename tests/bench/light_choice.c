@@ -150,12 +150,12 @@ static double nodes_visited(const struct light_tree *t, const struct places *p) 
     struct rng rng = {3};
     size_t nodes = 0, choices = 0;
     for (int i = 0; i < p->count; i++) {
-        uint32_t item;
+        const struct light_leaf *leaf;
         float pmf;
-        if (!light_tree_choose(t, &p->at[i], (double)rng_float(&rng), &item, &pmf))
+        if (!light_tree_choose(t, &p->at[i], (double)rng_float(&rng), &leaf, &pmf))
             continue;
         choices++;
-        nodes += (size_t)light_tree_depth(t, item);
+        nodes += (size_t)light_tree_depth(t, leaf->item);
     }
     return choices ? (double)nodes / (double)choices : 0;
 }

@@ -145,8 +145,10 @@ static void check_parts(void) {
             const struct vec2 u = {rng_float(&rng), rng_float(&rng)};
             const uint32_t part = rng_u32(&rng) % parts;
             struct light_sample s[2] = {{.pdf_sa = 0}, {.pdf_sa = 0}};
+            struct light_leaf leaf;
+            type->part_shape(o->data, part, &leaf);
             const bool found[2] = {type->sample(o->data, places[k], u, &s[0]),
-                                   type->part_sample(o->data, part, places[k], u, &s[1])};
+                                   type->part_sample(o->data, part, &leaf, places[k], u, &s[1])};
             for (int j = 0; j < 2; j++) {
                 const double pdf = (double)s[j].pdf_sa / (j ? parts : 1);
                 const double w = found[j] ? (double)spectrum_luminance(s[j].emission) / pdf : 0;
@@ -155,7 +157,7 @@ static void check_parts(void) {
             }
             const struct light_hit hit = {s[1].wi, s[1].distance, s[1].n, {.triangle = part}};
             if (found[1])
-                CHECK_NEAR(type->part_pdf_sa(o->data, places[k], &hit) / s[1].pdf_sa, 1, 1e-4);
+                CHECK_NEAR(type->part_pdf_sa(leaf.inv_area, &hit) / s[1].pdf_sa, 1, 1e-4);
         }
         const double variance = sum2[0] - sum[0] * sum[0] + sum2[1] - sum[1] * sum[1];
         CHECK_NEAR(sum[1], sum[0], 5 * sqrt(variance / SAMPLES));

@@ -124,12 +124,12 @@ static void check_place(const struct light_tree *t, const struct light_place *at
     // Below 1 where a node was entered all of whose children turn out to be dark.
     CHECK(sum <= 1 + 1e-5);
     for (int i = 0; i < 200; i++) {
-        uint32_t item;
+        const struct light_leaf *leaf;
         float pmf;
-        if (!light_tree_choose(t, at, (double)rng_float(r), &item, &pmf))
+        if (!light_tree_choose(t, at, (double)rng_float(r), &leaf, &pmf))
             continue;
-        CHECK(item < (uint32_t)count && pmf > 0);
-        CHECK_NEAR(light_tree_pmf(t, at, item) / pmf, 1, 1e-5);
+        CHECK(leaf->item < (uint32_t)count && pmf > 0);
+        CHECK_NEAR(light_tree_pmf(t, at, leaf->item) / pmf, 1, 1e-5);
     }
 }
 
@@ -137,20 +137,20 @@ static void check_place(const struct light_tree *t, const struct light_place *at
 static void check_lanes(const struct light_tree *t, int count, float scale, struct rng *r) {
     struct light_place at[WIDE_LANES];
     double u[WIDE_LANES];
-    uint32_t items[WIDE_LANES];
+    const struct light_leaf *leaves[WIDE_LANES];
     float pmfs[WIDE_LANES];
     const uint32_t wanted = rng_u32(r) & 0xffff;
     for (int i = 0; i < WIDE_LANES; i++) {
         at[i] = place(r, i, count, scale);
         u[i] = (double)rng_float(r);
     }
-    const uint32_t found = light_tree_choose_lanes(t, wanted, at, u, items, pmfs);
+    const uint32_t found = light_tree_choose_lanes(t, wanted, at, u, leaves, pmfs);
     for (int i = 0; i < WIDE_LANES; i++) {
-        uint32_t item = 0;
+        const struct light_leaf *leaf = NULL;
         float pmf = 0;
-        const bool lit = wanted >> i & 1 && light_tree_choose(t, &at[i], u[i], &item, &pmf);
+        const bool lit = wanted >> i & 1 && light_tree_choose(t, &at[i], u[i], &leaf, &pmf);
         CHECK(lit == (found >> i & 1));
-        CHECK(!lit || (item == items[i] && pmf == pmfs[i]));
+        CHECK(!lit || (leaf == leaves[i] && pmf == pmfs[i]));
     }
 }
 
@@ -163,11 +163,11 @@ static double choice_p_value(const struct light_tree *t, const struct light_plac
     double sum = 0;
     memset(observed, 0, sizeof observed);
     for (int i = 0; i < SAMPLES; i++) {
-        uint32_t item;
+        const struct light_leaf *leaf;
         float pmf;
-        if (light_tree_choose(t, at, (double)rng_float(r) + 0x1p-24 * (double)rng_float(r), &item,
+        if (light_tree_choose(t, at, (double)rng_float(r) + 0x1p-24 * (double)rng_float(r), &leaf,
                               &pmf))
-            observed[item]++;
+            observed[leaf->item]++;
         else
             refused++;
     }
@@ -232,7 +232,7 @@ static void check_units(void) {
 static void check_extremes(void) {
     struct light_tree t;
     const struct light_place at = {v3(1, 2, 3), v3(0, 0, 1)};
-    uint32_t item;
+    const struct light_leaf *leaf;
     float pmf;
     for (int i = 0; i < 1000; i++)
         bounds[i] = (struct light_bounds){.axis = v3(0, 0, 1), .cos_o = -1,
@@ -245,15 +245,15 @@ static void check_extremes(void) {
     }
     CHECK_NEAR(sum, 1, 1e-5);
     const struct light_place on = {v3(0, 0, 0), v3(0, 0, 1)};
-    CHECK(light_tree_choose(&t, &on, 0.3, &item, &pmf) && pmf > 0 && pmf <= 1);
+    CHECK(light_tree_choose(&t, &on, 0.3, &leaf, &pmf) && pmf > 0 && pmf <= 1);
     light_tree_finish(&t);
     for (int i = 0; i < 10; i++)
         bounds[i].intensity = 0;
     light_tree_init(&t, bounds, 10);
-    CHECK(!light_tree_choose(&t, &at, 0.3, &item, &pmf) && light_tree_pmf(&t, &at, 3) == 0);
+    CHECK(!light_tree_choose(&t, &at, 0.3, &leaf, &pmf) && light_tree_pmf(&t, &at, 3) == 0);
     light_tree_finish(&t);
     light_tree_init(&t, bounds, 0);
-    CHECK(!light_tree_choose(&t, &at, 0.3, &item, &pmf));
+    CHECK(!light_tree_choose(&t, &at, 0.3, &leaf, &pmf));
     light_tree_finish(&t);
 }
 
@@ -263,10 +263,10 @@ static double nodes_visited(const struct light_tree *t, struct rng *r) {
     size_t nodes = 0;
     for (int i = 0; i < CHOICES; i++) {
         const struct light_place at = {0.5f * v3(number(r), number(r), number(r)), direction(r)};
-        uint32_t item = 0;
+        const struct light_leaf *leaf;
         float pmf;
-        CHECK(light_tree_choose(t, &at, (double)rng_float(r), &item, &pmf));
-        nodes += (size_t)light_tree_depth(t, item);
+        CHECK(light_tree_choose(t, &at, (double)rng_float(r), &leaf, &pmf));
+        nodes += (size_t)light_tree_depth(t, leaf->item);
     }
     return (double)nodes / CHOICES;
 }
