@@ -5,10 +5,10 @@
 
 #include "base/mem.h"
 
-// What a triangle's shares may be off by, where nothing else is asked for: as much of the sky for
-// large triangles as for small ones, 1e-3 of a triangle of 400 even ones, 1e-2 of one of 4000.
+// What a triangle's shares may be off by, where nothing else is asked for: what is off, times how far,
+// is the same for large and small ones. 4e-4 of a triangle of 400 even ones, 1e-2 of one of 4000.
 static double default_tolerance(double solid_angle) {
-    const double t = 3e-5 / solid_angle;
+    const double t = 2.2e-6 / (solid_angle * sqrt(solid_angle));
     return t < 1e-4 ? 1e-4 : t > 1e-2 ? 1e-2 : t;
 }
 

@@ -43,7 +43,7 @@ struct light_loop_options {
     bool refines; // the lights are what a list has more than another: only they are summed
     bool unshadowed; // nothing hides the triangles, for comparison
     bool as_points; // triangles count as points at their centres, for comparison
-    double tolerance; // of shares (curve/overlap.h); 0: 3e-5 sr / its solid angle, 1e-4 to 1e-2
+    double tolerance; // of shares (curve/overlap.h); 0: 2.2e-6 by its solid angle ^ 1.5, 1e-4 to 1e-2
     uint32_t light_samples; // of the other lights at each position: even
     const struct light_loop_object *objects;
     uint32_t object_count;
