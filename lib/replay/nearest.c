@@ -91,4 +91,6 @@ void nearest_find(const struct edited_object *o, struct nearest *n) {
     n->missing = distance(o, &n->parameters, n->factor);
     if (n->missing > 1e-6)
         search(o, n);
+    else
+        n->missing = 0; // but for rounding
 }
