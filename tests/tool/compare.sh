@@ -37,9 +37,9 @@ expect 2 "$relume" compare "$one" "$two" --fail-above mes=1
 expect 2 "$relume" compare "$one" "$two" --fail-above mse=x
 expect 2 "$relume" compare "$one"
 expect 2 "$relume" compare "$one" "$two" --fail-abov3 mse=1
+contains "$err" "--fail-above"
 expect 2 "$relume" compare "$one" "$two" --map-kind signed
 expect 2 "$relume" compare "$one" "$two" --samples 4
-contains "$err" "--fail-above"
 
 expect 1 "$relume" compare "$one" "$large"
 contains "$err" "$large"
