@@ -190,6 +190,6 @@ const struct subcommand subcommand_tensor = {
                             "  relume tensor crop tea.safetensors -o part.safetensors --crop 2,2,9,8\n"
                             "  relume tensor merge tea.safetensors more.safetensors -o all.safetensors "
                             "--drop-zeros\n"
-                            "  relume tensor export lights.safetensors -o lights.exr\n"},
+                            "  relume tensor export room.safetensors -o lights.exr\n"},
     .run = run,
 };
