@@ -201,6 +201,7 @@ cp scene.xml car.xml
 cp "$materials/film.bsdf" . && "$relume" brdf diffuse --to gold.binary >log
 "$relume" render scene.xml -o grace.exr --size 32x16 --quiet
 "$relume" precompute relight car.xml -o car.safetensors --basis pixels:32x16 --spp 64 --quiet
+"$relume" precompute relight room.xml -o lights.safetensors --basis lights --spp 64 --quiet
 cp "$materials/linear.safetensors" tea.safetensors
 cp "$materials/more.safetensors" .
 cat >config.ocio <<END
