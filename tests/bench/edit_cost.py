@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """What a tensor costs: precomputing against path tracing of the same samples and bounces, in
-interleaved pairs, for the Cornell box with six editable objects, two of them glossy.
+interleaved pairs, for the Cornell box with six editable objects, two of them glossy. Then a session that edits
+one of them: freezing, frames, how many edits make up for the precomputation, and how many frames a second
+450x450 pixels (the published size) take, by the bytes of a frame and what the machine reads.
 
 usage: edit_cost.py BUILD [PAIRS [SIZE [SPP [LATER]]]]
 """
@@ -25,6 +27,18 @@ def run(*command):
     out = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     out["processor"] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
     return out
+
+
+def session(relume, tensor, folder):
+    """Seconds of freezing and of a frame of a session, bytes of a frame, bytes a second the machine reads."""
+    script = folder + "/session.json"
+    steps = [{"set": f"BackWall.exponent={20 + 10 * i}"} for i in range(9)]
+    pathlib.Path(script).write_text(json.dumps({"focus": True, "steps": steps}))
+    out = subprocess.run([relume, "edit", tensor, "--script", script, "-o", folder + "/c.exr", "--time", "--json",
+                          "--quiet"], check=True, capture_output=True, text=True).stdout
+    *frames, total = (json.loads(line) for line in out.splitlines())
+    frame = statistics.median(f["frame_seconds"] for f in frames[1:])
+    return frames[0]["switch_seconds"], frame, frames[-1]["bytes"], total["machine_gigabytes_per_second"] * 1e9
 
 
 def main():
@@ -52,6 +66,7 @@ def main():
                     "--later", later, *same)
             plain.append(a["paths"] / a["seconds"])
             tensor.append(b["paths"] / b["seconds"])
+            seconds = a["seconds"], b["seconds"]
             ratios.append(b["seconds"] / a["seconds"])
             processor.append(b["processor"] / a["processor"])
         print(f"{size}, {spp} samples, later hops {later}, {b['objects']} objects, {b['groups']} products, "
@@ -60,6 +75,12 @@ def main():
                              ("time of the tensor / of the picture", ratios),
                              ("processor time, whole runs", processor)):
             print(f"{name}: {statistics.median(values):.4g} ({min(values):.4g}, {max(values):.4g})")
+        freeze, frame, read, limit = session(relume, folder + "/b.safetensors", folder)
+        width, height = map(int, size.split("x"))
+        full = read * 450 * 450 / (width * height)
+        print(f"freezing {freeze * 1e3:.0f} ms, a frame {frame * 1e3:.2f} ms, {read / 1e6:.1f} MB; at 450x450 {full / 1e6:.0f} MB, "
+              f"{limit / full:.0f} frames/s at the {limit / 1e9:.1f} GB/s the machine reads")
+        print(f"break-even: {seconds[1] / (seconds[0] - frame):.2f} edits (tensor / (picture - frame), last pair)")
 
 
 if __name__ == "__main__":
