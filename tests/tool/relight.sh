@@ -31,6 +31,7 @@ expect 0 "$relume" relight lights.safetensors -o a.exr --light lamp=4,8,2 --ligh
 expect 0 "$relume" render new.xml -o b.exr --spp 256 --seed 1 --quiet
 expect 0 "$relume" compare b.exr a.exr --fail-above relmse=0.01
 # What was given by -D goes into the saved scene; the scene itself is not written over.
+# shellcheck disable=SC2016 # $lamp is for the scene
 sed 's|<integrator type="path"/>|&<default name="lamp" value="1"/>|
     s|value="1, 3, 1"/>|&<rgb name="intensity" value="$lamp"/>|' scene.xml >given.xml
 expect 0 "$relume" precompute relight given.xml -o given.safetensors --basis lights --spp 16 -D lamp=7 --quiet
@@ -81,7 +82,7 @@ for wrong in "relight --edit a" "relight --bounces 2" "relight --direct" "edit -
     expect 2 "$relume" precompute ${wrong%% *} scene.xml -o out.safetensors ${wrong#* }
     contains "$err" "has no effect on"
 done
-[ ! -e out.exr ] && [ ! -e out.safetensors ] || fail "something was written after an error"
+if [ -e out.exr ] || [ -e out.safetensors ]; then fail "something was written after an error"; fi
 
 expect 0 "$relume" precompute relight scene.xml -o cells.safetensors --basis haar:8x4 --spp 256 --quiet
 expect 0 "$relume" relight cells.safetensors -o a.exr --env env.pfm --rotate 30 --save-scene new.xml
