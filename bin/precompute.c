@@ -43,6 +43,9 @@ static const struct option_spec options[] = {
      .help = "make the material, or that of the shape, of this id editable, too"},
     {.name = "budget", .type = OPTION_TEXT, .offset = AT(budget), .argument = "relmse=X",
      .help = "" BUDGET_HELP "; drops what\n--time and --noise would keep to go on"},
+    {.name = "light", .type = OPTION_TEXT, .offset = AT(light), .argument = "NAME",
+     .help = "light of this emitter alone, or of this `group` of them: a tensor for each,\n"
+             "and `relume edit` edits lights and materials together"},
     OPTION_GROUP(EDIT_BOUNCES),
     {.name = "bounces", .type = OPTION_INT, .offset = AT(bounces), .argument = "N", .min = 1,
      .max = EDIT_MOST_BOUNCES, .def = "4",
@@ -153,7 +156,7 @@ static void report(const struct precompute_values *v, const struct relight_repor
 struct job_options precompute_job(const struct precompute_values *v,
                                   const struct scene_define *defines) {
     return (struct job_options){
-        .scene = v->scene, .spp = v->spp, .receiver = v->receiver,
+        .scene = v->scene, .light = v->light, .spp = v->spp, .receiver = v->receiver,
         .crop = {v->crop[0], v->crop[1], v->crop[2], v->crop[3]}, .max_depth = v->max_depth,
         .seed = (uint32_t)v->seed, .threads = v->threads,
         .stop = stop_on_signals(),

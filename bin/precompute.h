@@ -8,7 +8,7 @@
 struct precompute_values {
     struct receiver receiver;
     const char *kind, *scene, *output, *basis, *integrator, *sampler, *series, *tail, *later, *samples,
-        *budget;
+        *budget, *light;
     int spp, size[2], crop[4], max_depth, seed, threads, bounces;
     int lights, light_samples, packets;
     double memory, seconds, checkpoint, noise;

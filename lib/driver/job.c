@@ -182,6 +182,8 @@ static bool prepare(struct job *job, const struct job_options *o) {
     }
     for (const char *c = o->receiver.texels ? o->receiver.texels : o->receiver.vertices; c && *c; c++)
         job->defines_hash = file_hash(c, 1, job->defines_hash + (o->receiver.texels != NULL));
+    if (o->light)
+        job->defines_hash = file_hash(o->light, strlen(o->light) + 1, ~job->defines_hash);
     return set_render_options(job, o);
 }
 
@@ -205,6 +207,10 @@ bool job_open(struct job *job, const struct job_options *o) {
     job->scene = scene_read(o->scene, &reading);
     if (job->scene && o->may_leak)
         job->scene->may_leak = true;
+    if (job->scene && o->light && !light_groups_keep(job->scene, o->light)) {
+        job_close(job);
+        return false;
+    }
     if (job->scene && o->edit_scene)
         o->edit_scene(job->scene, o->edit_user);
     if (job->scene && receiver_place(&o->receiver, &reading, job->scene))

@@ -25,6 +25,7 @@ struct job_options {
     double clamp;                 // of indirect light (sink/film.h); 0: none
     const char *cryptomatte;      // "object,material" or NULL
     bool may_leak;                // as scene->may_leak, whatever the file says
+    const char *light;            // the only light or group of lights that shines; NULL: all
     bool adaptive;                // samples go where a pilot finds noise
     // Changes the scene between reading it and building the world; or NULL.
     void (*edit_scene)(struct scene *s, void *user);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "driver/light_groups.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "base/mem.h"
@@ -21,7 +22,8 @@ static uint32_t find_or_add(struct light_groups *g, const char *name) {
     return g->count++;
 }
 
-bool light_groups_init(struct light_groups *g, const struct scene *s) {
+// Names of the groups, and which each light belongs to; the rest: UINT32_MAX.
+static void gather(struct light_groups *g, const struct scene *s) {
     const bool named = any_named(s);
     g->names = mem_array(s->light_count + 1, sizeof *g->names);
     // Media that glow follow the lights as sources.
@@ -31,7 +33,11 @@ bool light_groups_init(struct light_groups *g, const struct scene *s) {
         const char *name = named ? s->lights[i].group : s->lights[i].name;
         g->of_light[i] = name ? find_or_add(g, name) : UINT32_MAX;
     }
-    const uint32_t rest = g->count;
+}
+
+bool light_groups_init(struct light_groups *g, const struct scene *s) {
+    gather(g, s);
+    const uint32_t rest = g->count, sources = s->light_count + s->medium_count;
     if (find_or_add(g, "rest") != rest) {
         log_error("%s: --light-groups writes what has no group as \"rest\"; expected another name of "
                   "the light or group that is called so", s->path);
@@ -54,4 +60,40 @@ void light_groups_finish(struct light_groups *g) {
     mem_free(g->names);
     mem_free(g->of_light);
     *g = (struct light_groups){0};
+}
+
+static bool no_group(const struct light_groups *g, const char *path, const char *group) {
+    char known[400] = "";
+    size_t used = 0;
+    for (uint32_t i = 0; i < g->count && used < sizeof known; i++)
+        used += (size_t)snprintf(known + used, sizeof known - used, " %s", g->names[i]);
+    log_error("--light %s: %s has no light or group of that name; there are:%s", group, path, known);
+    return false;
+}
+
+// Of the group, or UINT32_MAX: those without. How many stay.
+static uint32_t keep(struct scene *s, const uint32_t *of_light, uint32_t group) {
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        const bool stays = of_light[i] == group;
+        if (s->lights[i].shape != SCENE_NONE)
+            s->shapes[s->lights[i].shape].light = stays ? kept : SCENE_NONE;
+        if (stays)
+            s->lights[kept++] = s->lights[i];
+    }
+    return kept;
+}
+
+bool light_groups_keep(struct scene *s, const char *group) {
+    struct light_groups g = {0};
+    uint32_t wanted = 0, kept = 0;
+    gather(&g, s);
+    while (wanted < g.count && strcmp(g.names[wanted], group) != 0)
+        wanted++;
+    if (wanted < g.count || strcmp(group, "rest") == 0)
+        kept = keep(s, g.of_light, wanted < g.count ? wanted : UINT32_MAX);
+    const bool known = kept || no_group(&g, s->path, group);
+    s->light_count = kept;
+    light_groups_finish(&g);
+    return known;
 }

@@ -25,6 +25,8 @@ void origin_add(struct json *meta, const struct job *job, const struct job_optio
     json_add_text(meta, "scene", o->scene);
     json_add_text(meta, "scene hash", hash);
     add_defines(&o->reading, json_add_object(meta, "defines"));
+    if (o->light)
+        json_add_text(meta, "light", o->light);
 }
 
 // "-D NAME=VALUE" of each.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a tensor's metadata tells of the scene it was made of: "scene", where it was; "scene hash", of
-// its files; "defines", an object of the values of its parameters (-D).
+// its files; "defines", an object of the values of its parameters (-D); "light", the only one that shines.
 #pragma once
 
 #include "base/json.h"

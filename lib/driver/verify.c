@@ -116,6 +116,7 @@ static bool open_scene(struct verify *v) {
     o.reading.integrator = "path";
     o.spp = o.spp ? o.spp : DEFAULT_SAMPLES;
     o.max_depth = bounces ? bounces + 1 : -1;
+    o.light = json_text(json_get(v->tensor->meta, "light"));
     o.edit_scene = convert;
     o.edit_user = &c;
     v->opened = job_open(&v->job, &o);
