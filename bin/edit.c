@@ -12,17 +12,19 @@
 #include "subcommand.h"
 
 struct values {
-    const char *tensor, *script, *save, *scene;
+    const char *script, *save, *scene;
+    struct option_list tensors; // the first, and those of other lights
     struct replay_values common;
     int terms;
     bool list;
-    struct option_list changes[4]; // by enum edit_kind
+    struct option_list changes[5]; // by enum edit_kind
 };
 
 #define AT(member) offsetof(struct values, member)
 
 static const struct option_argument arguments[] = {
-    {"T", AT(tensor), "tensor of `relume precompute edit`", false, false},
+    {"T", AT(tensors), "tensor of `relume precompute edit`, or one for each light (--light there)",
+     false, true},
     {.name = NULL},
 };
 
@@ -39,6 +41,8 @@ static const struct option_spec options[] = {
      .argument = "OBJECT.TERM.f_A=FILE.csv", .help = "a curve from a file; f_A.rg: these channels only"},
     {.name = "op", .type = OPTION_TEXTS, .offset = AT(changes[EDIT_OPERATE]),
      .argument = "OBJECT.TERM.f_A:OPERATORS", .help = "change a curve in place (see below)"},
+    {.name = "light", .type = OPTION_TEXTS, .offset = AT(changes[EDIT_LIGHT]),
+     .argument = "NAME=R,G,B", .help = "factor of a light that has a tensor of its own; NAME=X: of all channels"},
     {.name = "script", .type = OPTION_TEXT, .offset = AT(script), .argument = "EDITS.json",
      .help = "play an editing session after these (see below)"},
     {.name = "save-scene", .type = OPTION_TEXT, .offset = AT(save), .argument = "OUT.xml",
@@ -70,9 +74,10 @@ static bool change_all(const struct values *v, change_fn *change, void *edited) 
     static const struct {
         enum edit_kind kind;
         const char *at;
-    } order[] = {{EDIT_SET, "--set"}, {EDIT_CURVE, "--curve"}, {EDIT_OPERATE, "--op"}};
+    } order[] = {{EDIT_SET, "--set"}, {EDIT_CURVE, "--curve"}, {EDIT_OPERATE, "--op"},
+                 {EDIT_LIGHT, "--light"}};
     bool good = true;
-    for (int k = 0; k < 3; k++)
+    for (size_t k = 0; k < sizeof order / sizeof *order; k++)
         for (size_t i = 0; i < v->changes[order[k].kind].count && good; i++)
             good = change(edited, order[k].kind, v->changes[order[k].kind].items[i], order[k].at);
     return good;
@@ -87,27 +92,41 @@ static bool change_objects(void *edited, enum edit_kind kind, const char *text, 
     return edit_apply(edited, kind, text, at, &touch);
 }
 
-static bool save(const struct values *v, const struct edit_tensor *e) {
-    const char *scene = v->scene ? v->scene : json_text(json_get(e->tensor->meta, "scene"));
+static bool save(const struct values *v, struct edit *e) {
+    const struct edit_tensor *objects = edit_objects(e);
+    const char *scene = v->scene ? v->scene : json_text(json_get(objects->tensor->meta, "scene"));
+    uint32_t count;
+    const struct edit_light *lights = edit_lights(e, &count);
     if (scene)
-        return save_scene(e, scene, v->save);
-    log_error("%s: does not tell its scene; expected --scene", v->tensor);
+        return save_scene(objects, lights, count, scene, v->save);
+    log_error("%s: does not tell its scene; expected --scene", objects->path);
     return false;
 }
 
-static bool evaluate(const struct values *v, struct edit_session *s,
+// Tensors of the other lights join.
+static bool add_lights(const struct values *v, struct tensor_file *const *files, struct edit *e,
+                       struct replay_timing *timing) {
+    bool good = true;
+    for (size_t i = 1; i < v->tensors.count && good; i++) {
+        good = edit_add(e, tensor_get(files[i]), v->tensors.items[i]);
+        replay_count(tensor_get(files[i]), timing);
+    }
+    return good;
+}
+
+static bool evaluate(const struct values *v, struct tensor_file *const *files, struct edit_session *s,
                      const struct edit_script *script, struct json *out) {
     const size_t plane = (size_t)s->tensor->width * s->tensor->height;
     const struct edit_settings o = {
         .no_device = v->common.no_device, .threads = v->common.threads, .focus = script->focus,
         .terms = v->terms ? (uint32_t)v->terms : script->terms};
-    struct edit *e = edit_create(s->tensor, v->tensor, &o);
+    struct edit *e = edit_create(s->tensor, v->tensors.items[0], &o);
     float *frame = mem_array(3 * plane, sizeof *frame), *variance = mem_array(plane, sizeof *frame);
     struct replay_timing timing = {0};
-    bool good = e && change_all(v, change_picture, e) &&
+    bool good = e && add_lights(v, files, e, &timing) && change_all(v, change_picture, e) &&
                 edit_script_play(script, e, v->script, frame, edit_session_frame, s);
     good = good && (!v->common.output || edit_picture(&v->common, s, e, frame, &timing, variance));
-    good = good && (!v->save || save(v, edit_objects(e)));
+    good = good && (!v->save || save(v, e));
     if (good && v->common.output)
         replay_report(&v->common, &timing, out);
     edit_destroy(e);
@@ -121,7 +140,7 @@ static bool evaluate(const struct values *v, struct edit_session *s,
 static bool list(const struct values *v, const struct edit_script *script, const struct tensor *t,
                  struct json *out) {
     struct edit_tensor e;
-    if (!edit_tensor_init(&e, t, v->tensor))
+    if (!edit_tensor_init(&e, t, v->tensors.items[0]))
         return false;
     const bool good = change_all(v, change_objects, &e) && edit_script_apply(script, &e, v->script);
     if (good && v->common.json)
@@ -132,13 +151,14 @@ static bool list(const struct values *v, const struct edit_script *script, const
     return good;
 }
 
-static bool edit_file(const struct values *v, const char *command, const struct tensor *t) {
+static bool edit_files(const struct values *v, const char *command, struct tensor_file *const *files) {
+    const struct tensor *t = tensor_get(files[0]);
     struct json *out = json_new_object();
     struct edit_session s = {v->script, v->common.output, command, t, v->common.quiet,
                              v->common.json, json_new_array()};
     struct edit_script script = {0};
     bool good = !v->script || edit_script_read(&script, v->script);
-    good = good && (v->list ? list(v, &script, t, out) : evaluate(v, &s, &script, out));
+    good = good && (v->list ? list(v, &script, t, out) : evaluate(v, files, &s, &script, out));
     for (size_t i = 0; i < json_count(s.frames) && good && v->common.json; i++)
         json_print(json_at(s.frames, i), false);
     if (good && v->common.json)
@@ -170,9 +190,15 @@ static int run(const void *values, const char *command) {
     }
     if (v->common.quiet)
         log_set_level(LOG_WARN);
-    struct tensor_file *f = tensor_open(v->tensor);
-    const bool done = f && edit_file(v, command, tensor_get(f));
-    tensor_close(f);
+    const size_t count = v->tensors.count;
+    struct tensor_file **files = mem_array(count, sizeof *files);
+    bool done = true;
+    for (size_t i = 0; i < count && done; i++)
+        done = (files[i] = tensor_open(v->tensors.items[i])) != NULL;
+    done = done && edit_files(v, command, files);
+    for (size_t i = 0; i < count; i++)
+        tensor_close(files[i]);
+    mem_free(files);
     return done ? EXIT_DONE : EXIT_FAILED;
 }
 

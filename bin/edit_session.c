@@ -14,7 +14,7 @@ void edit_session_help(void) {
         "   \"steps\": [{\"set\": \"cup.exponent=40\", \"write\": true},\n"
         "             {\"op\": [\"cup.specular.f_A:amplify-y,0,5,10,20,1.5\"], \"frames\": 5},\n"
         "             {\"curve\": \"cup.specular.f_A=lobe.csv\", \"settle\": true},\n"
-        "             {\"reset\": \"cup\"}]}\n"
+        "             {\"reset\": \"cup\", \"light\": \"sun=0.5\"}]}\n"
         "  A step makes its changes, then `frames` pictures (1); with `settle` until they are exact.\n"
         "  `write`: the last one goes to OUT.0001.exr, with the number of the step. `focus` freezes\n"
         "  what is not edited (of all curves, one or two are edited at a time: between two pictures, or in\n"

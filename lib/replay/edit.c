@@ -1,315 +1,179 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay/edit.h"
 
+#include <stdio.h>
 #include <string.h>
 
+#include "base/log.h"
 #include "base/mem.h"
-#include "base/thread.h"
-#include "replay/edit_focus.h"
-#include "replay/edit_stage.h"
+#include "replay/light_factor.h"
 
 struct edit {
-    struct edit_tensor objects;
     struct edit_settings options;
-    struct edit_stage whole, rest; // the tensor, and what a focus leaves of it
-    struct edit_focus focus;
-    bool focused;
-    struct focus_curve left;     // where the focus was before, if it was
-    bool was_elsewhere;
-    struct focus_curve touched[FOCUS_MOST]; // since the last frame
-    uint32_t touch_count;
-    bool scattered;              // more was touched
-    double (*factors)[CURVE_CHANNELS], (*groups)[CURVE_CHANNELS];
-    float *scale;
-    float **pixel;               // per block, or NULL
-    double **pixel_curve;        // values of the curve it belongs to
-    double switch_seconds;
+    struct edit_part *parts[EDIT_MOST_LIGHTS];
+    struct edit_light lights[EDIT_MOST_LIGHTS];
+    const struct tensor *tensors[EDIT_MOST_LIGHTS];
+    uint32_t count;
+    float *single; // the picture of one of them; of a session with one alone: NULL
 };
 
-static struct replay_options replay_options_of(const struct edit *e) {
-    return (struct replay_options){e->options.no_device, e->options.threads,
-                                   e->options.most_memory, e->whole.replay};
+static size_t plane_of(const struct edit *e) {
+    return (size_t)e->tensors[0]->width * e->tensors[0]->height;
 }
 
-static void make_room(struct edit *e) {
-    const struct edit_tensor *o = &e->objects;
-    const uint32_t n = o->tensor->block_count;
-    e->factors = mem_array(o->factor_count, sizeof *e->factors);
-    e->groups = mem_array(o->group_count, sizeof *e->groups);
-    e->scale = mem_array(CURVE_CHANNELS * (size_t)n, sizeof *e->scale);
-    e->pixel = mem_array(n, sizeof *e->pixel);
-    e->pixel_curve = mem_array(n, sizeof *e->pixel_curve);
+static bool take(struct edit *e, const struct tensor *t, const char *path) {
+    const uint32_t k = e->count;
+    e->parts[k] = edit_part_create(t, path, &e->options);
+    e->tensors[k] = t;
+    e->lights[k] = (struct edit_light){json_text(json_get(t->meta, "light")), {1, 1, 1}};
+    e->count += e->parts[k] != NULL;
+    return e->parts[k] != NULL;
 }
 
 struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_settings *o) {
     struct edit *e = mem_array(1, sizeof *e);
     e->options = *o;
-    const struct replay_options replay = replay_options_of(e);
-    if (edit_tensor_init(&e->objects, t, path)) {
-        make_room(e);
-        if (edit_stage_init(&e->whole, t, &replay))
-            return e;
-    }
+    if (take(e, t, path))
+        return e;
     edit_destroy(e);
     return NULL;
-}
-
-static void drop_focus(struct edit *e) {
-    edit_stage_finish(&e->rest);
-    edit_focus_finish(&e->focus);
-    e->focused = false;
 }
 
 void edit_destroy(struct edit *e) {
     if (!e)
         return;
-    drop_focus(e);
-    for (uint32_t i = 0; e->pixel && i < e->objects.tensor->block_count; i++) {
-        mem_free(e->pixel[i]);
-        mem_free(e->pixel_curve[i]);
-    }
-    edit_stage_finish(&e->whole);
-    mem_free(e->factors);
-    mem_free(e->groups);
-    mem_free(e->scale);
-    mem_free(e->pixel);
-    mem_free(e->pixel_curve);
-    if (e->objects.tensor)
-        edit_tensor_finish(&e->objects);
+    for (uint32_t k = 0; k < e->count; k++)
+        edit_part_destroy(e->parts[k]);
+    mem_free(e->single);
     mem_free(e);
 }
 
+// Index of the tensor of a light; UINT32_MAX: none.
+static uint32_t find(const struct edit *e, const char *name, size_t length) {
+    for (uint32_t k = 0; k < e->count; k++)
+        if (e->lights[k].name && strlen(e->lights[k].name) == length &&
+            strncmp(e->lights[k].name, name, length) == 0)
+            return k;
+    return UINT32_MAX;
+}
+
+// What is wrong with a tensor beside the first; NULL: nothing.
+static const char *misfit(const struct edit *e, const struct tensor *t) {
+    const struct tensor *first = e->tensors[0];
+    const char *light = json_text(json_get(t->meta, "light"));
+    const char *hash = json_text(json_get(t->meta, "scene hash"));
+    const char *own = json_text(json_get(first->meta, "scene hash"));
+    if (t->width != first->width || t->height != first->height)
+        return "it has another size";
+    if (!hash || !own || strcmp(hash, own) != 0)
+        return "it is of another scene";
+    if (!light || !e->lights[0].name)
+        return "both must be of one light, made with --light NAME";
+    if (find(e, light, strlen(light)) != UINT32_MAX)
+        return "there is one of the same light";
+    return e->count == EDIT_MOST_LIGHTS ? "there are too many" : NULL;
+}
+
+bool edit_add(struct edit *e, const struct tensor *t, const char *path) {
+    const char *wrong = misfit(e, t);
+    if (wrong) {
+        log_error("%s: cannot be added to the tensors before it: %s", path, wrong);
+        return false;
+    }
+    if (!e->single)
+        e->single = mem_array(3 * plane_of(e), sizeof *e->single);
+    return take(e, t, path);
+}
+
+const struct edit_light *edit_lights(const struct edit *e, uint32_t *count) {
+    *count = e->count;
+    return e->lights;
+}
+
 struct edit_tensor *edit_objects(struct edit *e) {
-    return &e->objects;
+    return edit_part_objects(e->parts[0]);
 }
 
 const char *edit_device(const struct edit *e) {
-    return replay_device(e->whole.replay);
-}
-
-bool edit_is_exact(const struct edit *e) {
-    return e->focused ? e->rest.exact : e->whole.exact;
-}
-
-struct edit_cost edit_last_cost(const struct edit *e) {
-    const struct edit_stage *s = e->focused ? &e->rest : &e->whole;
-    return (struct edit_cost){e->switch_seconds, s->coefficients, s->bytes};
-}
-
-void edit_forget(struct edit *e) {
-    struct edit_stage *s = e->focused ? &e->rest : &e->whole;
-    for (uint32_t i = 0; i < s->tensor.block_count; i++)
-        s->blocks[i].known = false;
+    return edit_part_device(e->parts[0]);
 }
 
 // ---- changes ------------------------------------------------------------------------------------
 
-// Whether weights of coefficients follow from what was touched, and not the scale or f_o alone.
-static bool reaches_weights(const struct edit_tensor *o, const struct edit_touch *t) {
-    for (uint32_t i = 0; i < o->factor_count; i++)
-        if (edit_factor_has(&o->factors[i], t->object))
-            return true;
-    for (uint32_t i = 0; i < o->tensor->block_count; i++)
-        for (uint32_t a = 0; o->blocks[i].object == t->object &&
-                             a < o->tensor->blocks[i].axis_count; a++)
-            if (t->several || edit_axis_curve(o, i, a) == t->curve)
-                return true;
+static bool no_light(const struct edit *e, const char *text, const char *at) {
+    char known[400] = "";
+    size_t used = 0;
+    for (uint32_t k = 0; k < e->count && used < sizeof known; k++)
+        used += (size_t)snprintf(known + used, sizeof known - used, " %s",
+                                 e->lights[k].name ? e->lights[k].name : "(all together)");
+    log_error("%s: light %s: there is no tensor of that light; there are:%s", at, text, known);
     return false;
 }
 
-static void touch(struct edit *e, struct focus_curve c) {
-    if (focus_has(e->touched, e->touch_count, c))
-        return;
-    for (uint32_t k = 0; k < e->touch_count; k++)
-        if (focus_has(&c, 1, e->touched[k])) {
-            e->touched[k] = c;
-            return;
-        }
-    if (e->touch_count < FOCUS_MOST)
-        e->touched[e->touch_count++] = c;
-    else
-        e->scattered = true;
+static bool change_light(struct edit *e, const char *text, const char *at) {
+    float factor[CURVE_CHANNELS];
+    const size_t length = light_factor_parse(text, at, factor);
+    const uint32_t k = length ? find(e, text, length) : UINT32_MAX;
+    if (length && k == UINT32_MAX)
+        return no_light(e, text, at);
+    if (length)
+        memcpy(e->lights[k].factor, factor, sizeof factor);
+    return length > 0;
 }
 
 bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const char *at) {
-    struct edit_touch t;
-    if (!edit_apply(&e->objects, kind, text, at, &t))
-        return false;
-    if (!reaches_weights(&e->objects, &t))
-        return true;
-    touch(e, (struct focus_curve){t.object, t.curve});
-    e->scattered = e->scattered || t.several;
-    return true;
-}
-
-// ---- focus --------------------------------------------------------------------------------------
-
-// Whether a block stays as it is: nothing to multiply out or to sum up.
-static bool stays(const struct edit *e, uint32_t block) {
-    const struct tensor_block *b = &e->objects.tensor->blocks[block];
-    return b->groups == 1 && e->objects.groups[0].count == 0 && e->focus.power_count == 1 &&
-           edit_focus_axes(&e->focus, &e->objects, block) == (1u << b->axis_count) - 1;
-}
-
-static bool contract_block(struct edit *e, uint32_t block, struct tensor_block *out) {
-    struct arena arena = {0};
-    struct contraction c;
-    const struct tensor_block *b = &e->objects.tensor->blocks[block];
-    *out = *b;
-    out->coefficients = edit_focus_coefficients(&e->focus, &e->objects, block);
-    out->halves = NULL;
-    out->weights = NULL;
-    if (b->pixel_count == 0 || (stays(e, block) && !e->options.terms))
-        return true;
-    out->storage = TENSOR_F32;
-    float *values = edit_stage_values(&e->rest.blocks[block], tensor_bytes(out) / sizeof *values);
-    out->values = values;
-    edit_focus_contraction(&e->focus, &e->objects, block,
-                           (const double(*)[CURVE_CHANNELS])e->factors, &arena, &c);
-    const bool done = replay_contract(e->whole.replay, block, &c, values);
-    arena_finish(&arena);
-    return done;
-}
-
-// Updates are for blocks with one axis left and more coefficients than a frame may change.
-static void prepare_updates(struct edit *e) {
-    const struct edit_tensor *o = &e->objects;
-    e->rest.terms = e->options.terms;
-    for (uint32_t i = 0; i < o->tensor->block_count && e->options.terms; i++) {
-        const struct tensor_block *b = &e->rest.tensor.blocks[i];
-        const unsigned axes = edit_focus_axes(&e->focus, o, i);
-        if (b->pixel_count == 0 || b->coefficients <= e->options.terms)
-            continue;
-        const uint32_t bins = axes == 1 ? b->axes[0].bins : axes == 2 ? b->axes[1].bins : 0;
-        edit_stage_transform(&e->rest, i, bins ? b->coefficients / bins : 1, bins,
-                             e->options.threads);
-    }
-}
-
-static bool move_focus(struct edit *e, const struct focus_curve *curves, uint32_t count) {
-    const struct tensor *t = e->objects.tensor;
-    const struct replay_options replay = replay_options_of(e);
-    const double start = time_seconds();
-    struct tensor rest = *t;
-    drop_focus(e);
-    edit_focus_init(&e->focus, &e->objects, curves, count);
-    rest.blocks = arena_alloc(&e->focus.arena, (t->block_count + 1) * sizeof *rest.blocks);
-    e->rest.tensor = rest;
-    e->rest.blocks = mem_array(t->block_count, sizeof *e->rest.blocks);
     bool good = true;
-    for (uint32_t i = 0; i < t->block_count && good; i++)
-        good = contract_block(e, i, &rest.blocks[i]);
-    if (good)
-        prepare_updates(e);
-    good = good && edit_stage_init(&e->rest, &rest, &replay);
-    e->focused = good;
-    e->switch_seconds = time_seconds() - start;
-    return good;
-}
-
-// To what was touched; to both where that is the curve which the focus has just left.
-static bool follow_touch(struct edit *e) {
-    const struct edit_focus *f = &e->focus;
-    struct focus_curve to[FOCUS_MOST] = {e->touched[0], e->touched[1]};
-    uint32_t count = e->touch_count;
-    const bool alone = e->focused && f->curve_count == 1 && count == 1;
-    const struct focus_curve from = f->curves[0];
-    if (alone && e->was_elsewhere && focus_has(&e->left, 1, to[0]) && !focus_has(to, 1, from))
-        to[count++] = from;
-    e->was_elsewhere = alone && count == 1;
-    e->left = from;
-    return move_focus(e, to, count);
-}
-
-// The focus goes to what was touched since the last frame, if that is no more than two curves.
-static bool choose_focus(struct edit *e) {
-    bool same = e->focused, good = true;
-    if (!e->options.focus || (e->touch_count == 0 && !e->scattered))
-        return true;
-    for (uint32_t k = 0; k < e->touch_count; k++)
-        same = same && focus_has(e->focus.curves, e->focus.curve_count, e->touched[k]);
-    if (e->scattered)
-        drop_focus(e);
-    else if (!same)
-        good = follow_touch(e);
-    e->touch_count = 0;
-    e->scattered = false;
+    if (kind == EDIT_LIGHT)
+        return change_light(e, text, at);
+    for (uint32_t k = 0; k < e->count && good; k++)
+        good = edit_part_change(e->parts[k], kind, text, at);
     return good;
 }
 
 // ---- frames -------------------------------------------------------------------------------------
 
-static void value_groups(struct edit *e, const struct edited_group *groups, uint32_t count) {
-    for (uint32_t g = 0; g < count; g++)
-        edit_group_value(&groups[g], (const double(*)[CURVE_CHANNELS])e->factors, NULL, e->groups[g]);
+bool edit_is_exact(const struct edit *e) {
+    bool exact = true;
+    for (uint32_t k = 0; k < e->count; k++)
+        exact = exact && edit_part_is_exact(e->parts[k]);
+    return exact;
 }
 
-static bool follow(struct edit *e, struct edit_stage *s) {
-    const struct edit_tensor *o = &e->objects;
-    bool good = true;
-    edit_stage_begin(s);
-    for (uint32_t i = 0; i < o->tensor->block_count && good; i++) {
-        const struct tensor_block *b = &s->tensor.blocks[i];
-        if (b->pixel_count == 0)
-            continue;
-        double *weights = mem_array(CURVE_CHANNELS * (size_t)b->coefficients, sizeof *weights);
-        edit_weights(o, i, (const double(*)[CURVE_CHANNELS])e->groups,
-                     e->focused ? e->focus.power_count : b->groups,
-                     e->focused ? edit_focus_axes(&e->focus, o, i) : EDIT_ALL_AXES, weights);
-        good = edit_stage_follow(s, i, weights);
-        mem_free(weights);
+struct edit_cost edit_last_cost(const struct edit *e) {
+    struct edit_cost all = {0};
+    for (uint32_t k = 0; k < e->count; k++) {
+        const struct edit_cost c = edit_part_last_cost(e->parts[k]);
+        all.switch_seconds += c.switch_seconds;
+        all.coefficients += c.coefficients;
+        all.bytes += c.bytes;
     }
-    return good;
+    return all;
 }
 
-// f_o of a block's pixels, where its curve changed.
-static void update_pixels(struct edit *e, uint32_t block) {
-    const struct edit_tensor *o = &e->objects;
-    const struct edited_block *b = &o->blocks[block];
-    const struct form_term *t = b->object == EDIT_NOTHING
-                                    ? NULL : &o->objects[b->object].form.term[b->term];
-    if (!t || !edit_has_slot(t, SLOT_O) || o->tensor->blocks[block].pixel_count == 0)
-        return;
-    const struct curve *c = o->objects[b->object].curve[t->slots[SLOT_O].curve];
-    const size_t n = (size_t)CURVE_CHANNELS * c->basis.count;
-    if (e->pixel[block] && memcmp(e->pixel_curve[block], c->values, n * sizeof *c->values) == 0)
-        return;
-    if (!e->pixel[block]) {
-        const size_t lanes = tensor_tiles(&o->tensor->blocks[block]) * TENSOR_LANES;
-        e->pixel[block] = mem_array(lanes * CURVE_CHANNELS, sizeof(float));
-        e->pixel_curve[block] = mem_array(n, sizeof *c->values);
-    }
-    memcpy(e->pixel_curve[block], c->values, n * sizeof *c->values);
-    edit_view_factor(o, block, e->pixel[block]);
-}
-
-static void value_factors(struct edit *e) {
-    const struct edit_tensor *o = &e->objects;
-    for (uint32_t i = 0; i < o->factor_count; i++)
-        edit_factor_value(o, &o->factors[i], e->factors[i]);
-    for (uint32_t i = 0; i < o->tensor->block_count; i++) {
-        edit_scale(o, i, e->scale + CURVE_CHANNELS * (size_t)i);
-        update_pixels(e, i);
-    }
-}
-
-static struct replay_factors factors_of(const struct edit *e) {
-    return (struct replay_factors){e->scale, (const float *const *)e->pixel};
+void edit_forget(struct edit *e) {
+    for (uint32_t k = 0; k < e->count; k++)
+        edit_part_forget(e->parts[k]);
 }
 
 bool edit_follow(struct edit *e) {
-    value_factors(e);
-    if (!choose_focus(e))
-        return false;
-    struct edit_stage *s = e->focused ? &e->rest : &e->whole;
-    value_groups(e, e->focused ? e->focus.powers : e->objects.groups,
-                 e->focused ? e->focus.power_count : e->objects.group_count);
-    return follow(e, s) && replay_wait(s->replay);
+    bool good = true;
+    for (uint32_t k = 0; k < e->count && good; k++)
+        good = edit_part_follow(e->parts[k]);
+    return good;
 }
 
 bool edit_compose(struct edit *e, float *frame) {
-    const struct replay_factors factors = factors_of(e);
-    return replay_frame(e->focused ? e->rest.replay : e->whole.replay, &factors, frame);
+    const size_t plane = plane_of(e);
+    bool good = true;
+    for (uint32_t k = 0; k < e->count && good; k++) {
+        float *own = k ? e->single : frame;
+        const float *factor = e->lights[k].factor;
+        good = edit_part_compose(e->parts[k], own);
+        const bool as_it_is = k == 0 && factor[0] == 1 && factor[1] == 1 && factor[2] == 1;
+        for (size_t i = 0; i < 3 * plane && good && !as_it_is; i++)
+            frame[i] = (k ? frame[i] : 0) + factor[i / plane] * own[i];
+    }
+    return good;
 }
 
 bool edit_frame(struct edit *e, float *frame) {
@@ -324,26 +188,11 @@ bool edit_settle(struct edit *e, float *frame) {
 }
 
 void edit_variance(struct edit *e, float *variance) {
-    const struct edit_tensor *o = &e->objects;
-    const struct replay_factors factors = factors_of(e);
-    const uint32_t n = o->tensor->block_count;
-    float **weights = mem_array(n, sizeof *weights);
-    value_factors(e);
-    value_groups(e, o->groups, o->group_count);
-    for (uint32_t i = 0; i < n; i++) {
-        const struct tensor_block *b = &o->tensor->blocks[i];
-        const size_t count = CURVE_CHANNELS * (size_t)(b->pixel_count ? b->coefficients : 0);
-        double *exact = mem_array(count, sizeof *exact);
-        weights[i] = mem_array(count, sizeof **weights);
-        if (count)
-            edit_weights(o, i, (const double(*)[CURVE_CHANNELS])e->groups, b->groups, EDIT_ALL_AXES,
-                         exact);
-        for (size_t k = 0; k < count; k++)
-            weights[i][k] = (float)exact[k];
-        mem_free(exact);
+    const size_t plane = plane_of(e);
+    for (uint32_t k = 0; k < e->count; k++) {
+        float *own = k ? e->single : variance;
+        edit_part_variance(e->parts[k], e->lights[k].factor, own);
+        for (size_t i = 0; i < plane && k; i++)
+            variance[i] += own[i];
     }
-    replay_variance(e->whole.replay, (const float *const *)weights, &factors, variance);
-    for (uint32_t i = 0; i < n; i++)
-        mem_free(weights[i]);
-    mem_free(weights);
 }

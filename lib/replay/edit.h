@@ -7,28 +7,36 @@
 // happen: to two curves where both change between frames, or in turn. With `terms`
 // frames are updated by that many wavelet coefficients each (curve/incremental.h) and are exact once
 // changes pause; sums are then made anew, so that rounding does not add up.
+//
+// Tensors of the same scene under one light each (`precompute edit --light`) make one session: what each
+// gives times a factor is added, so that lights and materials are edited together.
 #pragma once
 
-#include "replay/edit_change.h"
+#include "replay/edit_part.h"
+
+enum { EDIT_MOST_LIGHTS = 64 };
+
+struct edit_light {
+    const char *name; // of a light or its group; NULL: all lights of the scene
+    float factor[CURVE_CHANNELS];
+};
 
 struct edit;
-
-struct edit_settings {
-    bool no_device;     // only the C twins
-    int threads;        // 0: default
-    size_t most_memory; // as struct replay_options has it
-    bool focus;         // freeze what is not edited
-    uint32_t terms;     // coefficients that a frame may change; 0: all. Needs focus
-};
 
 // The tensor must outlive it; path is for messages. NULL after an error message.
 struct edit *edit_create(const struct tensor *t, const char *path, const struct edit_settings *o);
 void edit_destroy(struct edit *e); // NULL is fine
 
+// Another tensor, of the same scene under another light; both must say under which. false after an
+// error message.
+bool edit_add(struct edit *e, const struct tensor *t, const char *path);
+// In the order of the tensors.
+const struct edit_light *edit_lights(const struct edit *e, uint32_t *count);
+
 struct edit_tensor *edit_objects(struct edit *e); // to be looked at
 const char *edit_device(const struct edit *e);
 
-// A change as replay/edit_change.h has it. false after an error message.
+// A change as replay/edit_change.h has it, of all tensors. false after an error message.
 bool edit_change(struct edit *e, enum edit_kind kind, const char *text, const char *at);
 
 // The picture of the objects as they are, three planes. false after an error message.
@@ -46,8 +54,4 @@ void edit_forget(struct edit *e);
 // What the tensor's own noise makes of the picture: variance per pixel (replay_variance).
 void edit_variance(struct edit *e, float *variance);
 
-struct edit_cost {
-    double switch_seconds;       // contracting when the focus last moved
-    uint64_t coefficients, bytes; // read by the last frame
-};
 struct edit_cost edit_last_cost(const struct edit *e);

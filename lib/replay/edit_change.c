@@ -328,7 +328,9 @@ bool edit_apply(struct edit_tensor *e, enum edit_kind kind, const char *text, co
     case EDIT_SET: return set(e, text, at, touch);
     case EDIT_CURVE: return load_curve(e, text, at, touch);
     case EDIT_OPERATE: return operate(e, text, at, touch);
-    case EDIT_RESET: break;
+    case EDIT_RESET: return reset(e, text, at, touch);
+    case EDIT_LIGHT: break;
     }
-    return reset(e, text, at, touch);
+    *touch = (struct edit_touch){EDIT_NOTHING, EDIT_NOTHING, false};
+    return true;
 }

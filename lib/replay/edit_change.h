@@ -9,6 +9,7 @@
 //     operate  OBJECT.TERM.f_A:amplify-y,a,b,c,d,m[,base];... (curve/operators.h); f_A.r, f_A.gb:
 //              in these channels only
 //     reset    OBJECT: as it was in the scene
+//     light    NAME=R,G,B or NAME=X: a factor of the tensor of that light; materials stay
 #pragma once
 
 #include "replay/edit_tensor.h"
@@ -19,7 +20,7 @@ struct edit_touch {
     bool several; // more than one curve
 };
 
-enum edit_kind { EDIT_SET, EDIT_CURVE, EDIT_OPERATE, EDIT_RESET };
+enum edit_kind { EDIT_SET, EDIT_CURVE, EDIT_OPERATE, EDIT_RESET, EDIT_LIGHT };
 
 // false after an error message that names `at`; then nothing is changed.
 bool edit_apply(struct edit_tensor *e, enum edit_kind kind, const char *text, const char *at,

@@ -13,7 +13,8 @@ enum { MOST_STEPS = 1 << 20, MOST_FRAMES = 1 << 16, MOST_CHANGES = 4096, MOST_SE
 static const struct {
     const char *name;
     enum edit_kind kind;
-} kinds[] = {{"reset", EDIT_RESET}, {"set", EDIT_SET}, {"curve", EDIT_CURVE}, {"op", EDIT_OPERATE}};
+} kinds[] = {{"reset", EDIT_RESET}, {"set", EDIT_SET}, {"curve", EDIT_CURVE}, {"op", EDIT_OPERATE},
+           {"light", EDIT_LIGHT}};
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 struct reader {
@@ -72,13 +73,13 @@ static bool read_truth(const struct json *j, bool *out) {
 }
 
 static bool read_step(struct reader *r, const struct json *j, struct edit_step *s) {
-    static const char *const known[] = {"reset", "set", "curve", "op", "frames", "write", "settle",
-                                        NULL};
+    static const char *const known[] = {"reset",  "set",   "curve",  "op", "light",
+                                        "frames", "write", "settle", NULL};
     if (!json_is_object(j))
         return fail(r, "expected an object in", "steps");
     for (size_t i = 0; i < json_count(j); i++)
         if (!is_among(json_key(j, i), known))
-            return fail(r, "expected reset, set, curve, op, frames, write or settle, found",
+            return fail(r, "expected reset, set, curve, op, light, frames, write or settle, found",
                         json_key(j, i));
     s->frames = 1;
     if (!read_count(json_get(j, "frames"), 0, MOST_FRAMES, &s->frames))

@@ -8,7 +8,7 @@
 //                {"reset": "teapot"}]}
 //
 // A step makes its changes (a text or a list of texts as replay/edit_change.h has them; reset, then
-// set, curve and op) and then `frames` pictures (1), of which the last is a file where "write" is
+// set, curve, op and light) and then `frames` pictures (1), of which the last is a file where "write" is
 // true. "focus" (true) freezes what is not edited, "terms" (0: all) is how many coefficients a frame
 // may change; a step with "settle": true goes on until its picture is exact.
 #pragma once

@@ -12,6 +12,7 @@
 #include "curve/wavelet.h"
 #include "image/image.h"
 #include "math/directions.h"
+#include "replay/light_factor.h"
 
 enum { MOST_SH = 121, FINE = 4096 };
 
@@ -204,20 +205,13 @@ static bool no_light(const struct basis *b, const char *text) {
 
 // Applies "NAME=R,G,B" or "NAME=X".
 static bool scale_light(const struct basis *b, const char *text, float *weights) {
-    const char *equals = strchr(text, '=');
     float rgb[3];
-    char rest;
-    const int n = equals ? sscanf(equals + 1, "%f,%f,%f%c", &rgb[0], &rgb[1], &rgb[2], &rest) : 0;
-    if (n == 1)
-        rgb[1] = rgb[2] = rgb[0];
-    if ((n != 1 && n != 3) || !(fabsf(rgb[0]) + fabsf(rgb[1]) + fabsf(rgb[2]) < INFINITY)) {
-        log_error("--light %s: expected NAME=R,G,B or NAME=FACTOR", text);
+    const size_t length = light_factor_parse(text, "--light", rgb);
+    if (!length)
         return false;
-    }
     for (size_t i = 0; i < json_count(b->lights); i++) {
         const char *name = json_text(json_at(b->lights, i));
-        if (!name || strlen(name) != (size_t)(equals - text) ||
-            strncmp(name, text, (size_t)(equals - text)) != 0)
+        if (!name || strlen(name) != length || strncmp(name, text, length) != 0)
             continue;
         for (size_t k = 0; k < 3; k++)
             weights[3 * i + k] *= rgb[k];

@@ -111,19 +111,22 @@ static bool scale_named(struct scene_copy *c, struct xml_node *node, const char 
     return good;
 }
 
-// "NAME=R,G,B" or "NAME=X", which relight_weights has checked.
-static bool scale_light(struct scene_copy *c, const char *text) {
-    const char *equals = strchr(text, '=');
-    double factor[3];
+bool save_light_factor(struct scene_copy *c, const char *name, const double factor[3]) {
     size_t found = 0;
-    if (sscanf(equals + 1, "%lf,%lf,%lf", &factor[0], &factor[1], &factor[2]) == 1)
-        factor[1] = factor[2] = factor[0];
-    const char *name = arena_printf(&c->arena, "%.*s", (int)(equals - text), text);
     if (!scale_named(c, c->root, name, factor, &found))
         return false;
     if (found == 0)
         log_error("%s: has no emitter of the id or group %s in the file itself", c->scene, name);
     return found > 0;
+}
+
+// "NAME=R,G,B" or "NAME=X", which relight_weights has checked.
+static bool scale_light(struct scene_copy *c, const char *text) {
+    const char *equals = strchr(text, '=');
+    double factor[3];
+    if (sscanf(equals + 1, "%lf,%lf,%lf", &factor[0], &factor[1], &factor[2]) == 1)
+        factor[1] = factor[2] = factor[0];
+    return save_light_factor(c, arena_printf(&c->arena, "%.*s", (int)(equals - text), text), factor);
 }
 
 // ---- environments -------------------------------------------------------------------------------

@@ -8,7 +8,7 @@
 #include "base/log.h"
 #include "curve/form_json.h"
 #include "replay/nearest.h"
-#include "replay/scene_copy.h"
+#include "replay/save_lights.h"
 
 struct saving {
     struct scene_copy copy; // first
@@ -171,11 +171,20 @@ static bool save_object(struct saving *s, const struct edited_object *o) {
     return written;
 }
 
-bool save_scene(const struct edit_tensor *e, const char *scene, const char *output) {
+static bool save_light(struct saving *s, const struct edit_light *l) {
+    const double factor[] = {l->factor[0], l->factor[1], l->factor[2]};
+    return (factor[0] == 1 && factor[1] == 1 && factor[2] == 1) ||
+           save_light_factor(&s->copy, l->name, factor);
+}
+
+bool save_scene(const struct edit_tensor *e, const struct edit_light *lights, uint32_t light_count,
+                const char *scene, const char *output) {
     struct saving s = {.objects = e};
     bool good = scene_copy_init(&s.copy, scene, output, e->tensor->meta);
     for (uint32_t i = 0; i < e->object_count && good; i++)
         good = save_object(&s, &e->objects[i]);
+    for (uint32_t i = 0; i < light_count && good; i++)
+        good = save_light(&s, &lights[i]);
     good = good && scene_copy_write(&s.copy);
     scene_copy_finish(&s.copy);
     return good;

@@ -8,8 +8,9 @@
 // renderers without curves. Files that the scene refers to are found where it was.
 #pragma once
 
-#include "replay/edit_tensor.h"
+#include "replay/edit.h"
 
 // scene: the file that the tensor was made of. Objects need ids, of materials or shapes, in that
-// file itself. false after an error message.
-bool save_scene(const struct edit_tensor *e, const char *scene, const char *output);
+// file itself, and lights with a factor other than 1 an id or `group`. false after an error message.
+bool save_scene(const struct edit_tensor *e, const struct edit_light *lights, uint32_t light_count,
+                const char *scene, const char *output);

@@ -78,7 +78,7 @@ static void saved_scenes_come_back(void) {
     snprintf(saved, sizeof saved, "%s", scene_path("saved.xml"));
     CHECK(edit_tensor_init(&e, tensor_get(f), tensor_file) &&
           edit_script_read(&script, edits_file) && edit_script_apply(&script, &e, edits_file));
-    CHECK(save_scene(&e, scene_file, saved));
+    CHECK(save_scene(&e, NULL, 0, scene_file, saved));
     const struct job_options o = {.scene = saved, .spp = 4, .threads = 2};
     const bool opened = job_open(&job, &o);
     CHECK(opened && edit_plan_init(&plan, job.scene) && plan.count == e.object_count);
