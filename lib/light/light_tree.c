@@ -7,7 +7,7 @@
 #include "math/lanes.h"
 
 // Cosines below come from square roots and can be wrong by the root of the rounding, that of axes in
-// 16 bits: nothing is excluded, nor counted less, than with this much to spare.
+// bytes: nothing is excluded, nor counted less, than with this much to spare.
 static const float SLACK = 1e-2f;
 // Share that light from behind the receiver's normal counts: a guide only, since a material may
 // have tilted the normal it really uses.
