@@ -7,39 +7,9 @@
 #include <string.h>
 
 #include "check.h"
+#include "triangles.h"
 
 enum { MOST = 512 };
-
-static uint64_t state = 1;
-
-static double uniform(void) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(state >> 11) * 0x1p-53;
-}
-
-static void unit(double w[3]) {
-    const double z = 2 * uniform() - 1, r = sqrt(1 - z * z), phi = 2 * M_PI * uniform();
-    w[0] = r * cos(phi);
-    w[1] = r * sin(phi);
-    w[2] = z;
-}
-
-static void normalise(double w[3]) {
-    const double l = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    for (int i = 0; i < 3; i++)
-        w[i] /= l;
-}
-
-// Directions about a middle one, `size` radians away.
-static void make_triangle(const double middle[3], double size, double corner[3][3]) {
-    for (int i = 0; i < 3; i++) {
-        double d[3];
-        unit(d);
-        for (int k = 0; k < 3; k++)
-            corner[i][k] = middle[k] + size * d[k];
-        normalise(corner[i]);
-    }
-}
 
 static void shares_of(struct overlap *o, const double wo[3], const double corner[3][3],
                       size_t count) {

@@ -7,51 +7,20 @@
 
 #include "check.h"
 #include "integrator/wide_angles.h"
+#include "triangles.h"
 
 enum { MOST = 128 };
-
-static uint64_t state = 7;
-
-static double uniform(void) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(state >> 11) * 0x1p-53;
-}
-
-static void unit(double w[3]) {
-    const double z = 2 * uniform() - 1, r = sqrt(1 - z * z), phi = 2 * M_PI * uniform();
-    w[0] = r * cos(phi);
-    w[1] = r * sin(phi);
-    w[2] = z;
-}
-
-static void normalise(double w[3]) {
-    const double l = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    for (int i = 0; i < 3; i++)
-        w[i] /= l;
-}
-
-// Directions about a middle one, `size` radians away.
-static void make_triangle(const double middle[3], double size, struct overlap_triangle *t) {
-    double corner[3][3];
-    for (int i = 0; i < 3; i++) {
-        double d[3];
-        unit(d);
-        for (int k = 0; k < 3; k++)
-            corner[i][k] = middle[k] + size * d[k];
-        normalise(corner[i]);
-    }
-    overlap_triangle_make(t, corner);
-}
 
 // Sixteen triangles above the surface, a quarter of them around the mirror direction.
 static void make_triangles(const double wo[3], double size, struct overlap_triangle t[WIDE_LANES]) {
     for (int i = 0; i < WIDE_LANES; i++) {
-        double middle[3];
+        double middle[3], corner[3][3];
         unit(middle);
         middle[2] = fabs(middle[2]);
         if (i % 4 == 0)
             memcpy(middle, (double[3]){-wo[0], -wo[1], wo[2]}, sizeof middle);
-        make_triangle(middle, size, &t[i]);
+        make_triangle(middle, size, corner);
+        overlap_triangle_make(&t[i], corner);
     }
 }
 
@@ -195,6 +164,7 @@ static void sums_to_vectors(struct bench *b, enum basis_kind kind) {
 int main(void) {
     struct bench b = {.sums = mem_array(MOST * MOST * 3 + WIDE_OVERLAP_SPARE, sizeof(double)),
                       .expected = mem_array(MOST * MOST * 3 + WIDE_OVERLAP_SPARE, sizeof(double))};
+    state = 7;
     agrees_with_one(&b, BASIS_BOX, 128);
     agrees_with_one(&b, BASIS_BOX, 16);
     agrees_with_one(&b, BASIS_HAT, 128);
