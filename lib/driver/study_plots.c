@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plots of a study: relMSE over samples (or what else was varied), seconds and memory.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
