@@ -51,8 +51,8 @@ static bool claim_much(struct decoder_input *in, struct image *im) {
 
 static bool take_much(struct decoder_input *in, struct image *im) {
     (void)im;
-    for (int i = 0; i < 64; i++) { // 4 GiB, touched
-        char *p = malloc((size_t)64 << 20);
+    for (int i = 0; i < 64; i++) {                          // 4 GiB, touched
+        char *volatile kept = malloc((size_t)64 << 20), *p = kept; // or clang would leave it out
         if (!p)
             return decoder_fail(in, "memory ran out");
         memset(p, i, (size_t)64 << 20);

@@ -19,7 +19,8 @@ struct view {
 };
 
 static double uniform(struct rng *r) {
-    return ((double)rng_u32(r) + rng_float(r)) * 0x1p-32;
+    const double high = (double)rng_u32(r);
+    return (high + (double)rng_float(r)) * 0x1p-32;
 }
 
 static double between(struct rng *r, double lo, double hi) {
@@ -31,8 +32,9 @@ static double decades(struct rng *r, double lo, double hi) {
     return lo * pow(hi / lo, uniform(r));
 }
 
-static void direction(double z, double phi, double w[3]) {
-    const double s = sqrt((1 - z) * (1 + z));
+// Of any azimuth.
+static void direction(struct rng *r, double z, double w[3]) {
+    const double s = sqrt((1 - z) * (1 + z)), phi = between(r, 0, 2 * M_PI);
     w[0] = s * cos(phi);
     w[1] = s * sin(phi);
     w[2] = z;
@@ -68,12 +70,12 @@ static void finish_view(struct view *v) {
 // Half of them near the mirror direction, at all distances, where highlights are.
 static struct view random_view(struct rng *r) {
     struct view v;
-    direction(between(r, 2e-3, 1), between(r, 0, 2 * M_PI), v.o);
+    direction(r, between(r, 2e-3, 1), v.o);
     do {
-        direction(between(r, 2e-3, 1), between(r, 0, 2 * M_PI), v.i);
+        direction(r, between(r, 2e-3, 1), v.i);
         if (uniform(r) < 0.5) {
             double h[3];
-            direction(cos(decades(r, 1e-4, 1.2)), between(r, 0, 2 * M_PI), h);
+            direction(r, cos(decades(r, 1e-4, 1.2)), h);
             const double c = 2 * dot3(h, v.o);
             for (int k = 0; k < 3; k++)
                 v.i[k] = c * h[k] - v.o[k];
@@ -214,10 +216,19 @@ static double homomorphic(const struct view *v, const struct model_parameters *p
            line(SLOT_A, k, atan2(sqrt(v->sin2_h), v->cos_h));
 }
 
+// Half the angle between both directions; from its cosine alone it would lack digits near 0.
+static double theta_d(const struct view *v) {
+    double sum = 0, difference = 0;
+    for (int k = 0; k < 3; k++) {
+        sum += (v->o[k] + v->i[k]) * (v->o[k] + v->i[k]);
+        difference += (v->o[k] - v->i[k]) * (v->o[k] - v->i[k]);
+    }
+    return atan2(sqrt(difference), sqrt(sum));
+}
+
 static double halfdifference(const struct view *v, const struct model_parameters *p, int k) {
     (void)p;
-    return line(SLOT_A, k, atan2(sqrt(v->sin2_h), v->cos_h)) *
-           line(SLOT_B, k, atan2(sqrt(1 - v->cos_d * v->cos_d), v->cos_d));
+    return line(SLOT_A, k, atan2(sqrt(v->sin2_h), v->cos_h)) * line(SLOT_B, k, theta_d(v));
 }
 
 static double freehand(const struct view *v, const struct model_parameters *p, int k) {
