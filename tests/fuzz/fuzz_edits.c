@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Damaged editing sessions, played on a small tensor.
+// Damaged editing sessions, played on a small tensor: by the twins of the kernels; with
+// RELUME_TEST_DEVICE=1 by OpenCL kernels.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,12 +28,13 @@ static bool read_edits(const char *path) {
     struct arena arena = {0};
     struct edit_script s;
     int frames = 0;
+    const char *device = getenv("RELUME_TEST_DEVICE");
     if (!edit_script_read(&s, path))
         return false;
     const struct sample_options o = {.bins = 8};
     const struct tensor t = sample_make(&o, &arena);
     struct edit *e = edit_create(&t, "sample", &(struct edit_settings){
-        .no_device = true, .threads = 1, .focus = s.focus, .terms = s.terms});
+        .no_device = !device || !*device, .threads = 1, .focus = s.focus, .terms = s.terms});
     const bool played = e && edit_script_play(&s, e, path, frame, on_frame, &frames);
     edit_destroy(e);
     edit_script_finish(&s);
