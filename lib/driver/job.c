@@ -148,7 +148,7 @@ static bool prepare_sensor(struct job *job) {
         .centre = {s->centre[0], s->centre[1], s->centre[2]}, .arena = &s->arena,
         .shape = s->sensor_shape == SCENE_NONE ? NULL : &s->shapes[s->sensor_shape]};
     if (type->place && !integrator_meters(s->integrator)) {
-        log_error_at(sensor->at, "integrator \"%s\" cannot serve a %s; path and volpath can",
+        log_error_at(sensor->at, "integrator \"%s\" cannot serve sensor \"%s\"; path and volpath can",
                      s->integrator->type->name, sensor->type->name);
         return false;
     }

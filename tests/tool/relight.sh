@@ -82,6 +82,10 @@ for wrong in "relight --edit a" "relight --bounces 2" "relight --direct" "edit -
     expect 2 "$relume" precompute ${wrong%% *} scene.xml -o out.safetensors ${wrong#* }
     contains "$err" "has no effect on"
 done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >patch.obj
+sed 's|</scene>|<shape type="obj" id="patch"><string name="filename" value="patch.obj"/></shape>&|' scene.xml >patch.xml
+expect 1 "$relume" precompute relight patch.xml -o out.safetensors --vertices patch --integrator direct
+contains "$err" 'integrator "direct" cannot serve sensor "vertices"; path and volpath can'
 if [ -e out.exr ] || [ -e out.safetensors ]; then fail "something was written after an error"; fi
 
 expect 0 "$relume" precompute relight scene.xml -o cells.safetensors --basis haar:8x4 --spp 256 --quiet
