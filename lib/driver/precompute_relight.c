@@ -121,10 +121,19 @@ static bool environment_is_plain(const struct relight_options *o, const struct w
     return true;
 }
 
+static bool light_is_traced(const struct scene *s) {
+    if (integrator_lights(s->integrator))
+        return true;
+    log_error("%s: integrator \"%s\" traces no light that a tensor could keep; expected one that does, as "
+              "path", s->path, s->integrator->type->name);
+    return false;
+}
+
 static bool open_jobs(const struct relight_options *o, struct basis *b, struct job *job) {
     if (!parse_basis(o->basis, b) || !job_open(job, &o->job))
         return false;
-    if ((b->source.kind != SOURCE_LIGHTS && !environment_is_plain(o, job->world)) ||
+    if (!light_is_traced(job->scene) ||
+        (b->source.kind != SOURCE_LIGHTS && !environment_is_plain(o, job->world)) ||
         !set_weights(b, job)) {
         job_close(job);
         return false;

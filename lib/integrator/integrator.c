@@ -23,6 +23,18 @@ bool integrator_meters(const struct object *integrator) {
     return meters;
 }
 
+bool integrator_lights(const struct object *integrator) {
+    bool nests = false, some = false;
+    for (const struct param *p = integrator->type->params; p && p->name; p++)
+        if (p->type == PARAM_INTEGRATOR) {
+            const struct object *nested;
+            memcpy(&nested, (const char *)integrator->data + p->offset, sizeof nested);
+            nests = true;
+            some = some || (nested && integrator_lights(nested));
+        }
+    return some || !nests;
+}
+
 bool integrator_enter(struct object *integrator, struct world *w, struct arena *arena) {
     const struct integrator_type *type = integrator_type_of(integrator);
     bool good = !type->enter || type->enter(integrator, w, arena);

@@ -87,6 +87,8 @@ extern const struct object integrator_first_hits;
 
 // Whether an integrator, with what is nested in it, can begin paths at path_start.surface.
 bool integrator_meters(const struct object *integrator);
+// Whether it makes a picture: one that nests others makes theirs, or none.
+bool integrator_lights(const struct object *integrator);
 
 // Lets an integrator and what is nested in it look at the world. Lights are to be chosen after it.
 bool integrator_enter(struct object *integrator, struct world *w, struct arena *arena);

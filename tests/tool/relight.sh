@@ -86,6 +86,11 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >patch.obj
 sed 's|</scene>|<shape type="obj" id="patch"><string name="filename" value="patch.obj"/></shape>&|' scene.xml >patch.xml
 expect 1 "$relume" precompute relight patch.xml -o out.safetensors --vertices patch --integrator direct
 contains "$err" 'integrator "direct" cannot serve sensor "vertices"; path and volpath can'
+# Layers of the first hit are no light; the picture beside them is.
+expect 1 "$relume" precompute relight scene.xml -o out.safetensors --integrator aov
+contains "$err" 'integrator "aov" traces no light'
+sed 's|<integrator type="path"/>|<integrator type="aov">&</integrator>|' scene.xml >nested.xml
+expect 0 "$relume" precompute relight nested.xml -o nested.safetensors --spp 4 --quiet
 if [ -e out.exr ] || [ -e out.safetensors ]; then fail "something was written after an error"; fi
 
 expect 0 "$relume" precompute relight scene.xml -o cells.safetensors --basis haar:8x4 --spp 256 --quiet
