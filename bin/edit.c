@@ -36,7 +36,8 @@ static const struct option_spec options[] = {
              "leave them; no picture"},
     {.name = "set", .letter = 's', .type = OPTION_TEXTS, .offset = AT(changes[EDIT_SET]),
      .argument = "OBJECT.PARAM=V", .help = "a number of an object's model: its curves are made anew.\n"
-     "OBJECT.TERM.scale=V is a term's factor. V: a number or R,G,B"},
+     "OBJECT.TERM.scale=V is a term's factor. V: a number or R,G,B. Lobes sharper than\n"
+     "the curve's J bins carry (about cos^n with n = (J / 5.2)^2) are warned of"},
     {.name = "curve", .letter = 'c', .type = OPTION_TEXTS, .offset = AT(changes[EDIT_CURVE]),
      .argument = "OBJECT.TERM.f_A=FILE.csv", .help = "a curve from a file; f_A.rg: these channels only"},
     {.name = "op", .type = OPTION_TEXTS, .offset = AT(changes[EDIT_OPERATE]),

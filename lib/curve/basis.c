@@ -73,3 +73,11 @@ uint32_t basis_at(const struct basis *b, double gamma, uint32_t index[2], double
     value[0] = 1 - value[1];
     return 2;
 }
+
+double basis_exponent(const struct basis *b) {
+    const uint32_t n = basis_intervals(b);
+    const double bins = 5.2 / CURVE_END * n / b->count; // of the spread; count, also where hats are more
+    const uint32_t i = bins < n ? (uint32_t)bins : n - 1;
+    const double spread = b->knots[i] + (bins - i) * (b->knots[i + 1] - b->knots[i]);
+    return 1 / (spread * spread);
+}

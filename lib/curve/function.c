@@ -75,6 +75,22 @@ double function_at(const void *function, double gamma) {
     return function_value(function, gamma);
 }
 
+// From what they are next to 0: cos(g)^n is exp(-n g^2 / 2).
+double function_exponent(const struct curve_function *f) {
+    const double p = f->p[0];
+    switch (f->kind) {
+    case FUNCTION_COS_POWER: return p;
+    case FUNCTION_BECKMANN: return fmax(2 / (p * p) - 4, 0);
+    case FUNCTION_GAUSSIAN: return 2 / (p * p);
+    case FUNCTION_SCHLICK_Z: return 4 * (1 - p) / p;
+    case FUNCTION_CONSTANT:
+    case FUNCTION_FRESNEL:
+    case FUNCTION_SCHLICK_F:
+    case FUNCTION_TABLE: break;
+    }
+    return 0;
+}
+
 void function_project(struct curve *c, uint32_t channel, const struct curve_function *f,
                       enum curve_filter filter) {
     const struct basis *b = f->kind == FUNCTION_TABLE ? &f->table->basis : NULL;

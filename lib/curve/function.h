@@ -25,6 +25,9 @@ struct curve_function {
 double function_value(const struct curve_function *f, double gamma);
 double function_at(const void *function, double gamma); // the same as a curve_fn
 
+// Of a lobe: the exponent n of the cos(g)^n that is as narrow around 0; 0: no lobe.
+double function_exponent(const struct curve_function *f);
+
 // Fills a channel of a curve; a table's own knots are minded.
 void function_project(struct curve *c, uint32_t channel, const struct curve_function *f,
                       enum curve_filter filter);

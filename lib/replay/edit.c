@@ -82,7 +82,12 @@ bool edit_add(struct edit *e, const struct tensor *t, const char *path) {
     }
     if (!e->single)
         e->single = mem_array(3 * plane_of(e), sizeof *e->single);
-    return take(e, t, path);
+    if (!take(e, t, path))
+        return false;
+    struct edit_tensor *o = edit_part_objects(e->parts[e->count - 1]);
+    for (uint32_t i = 0; i < o->object_count; i++)
+        o->objects[i].told_sharp = true; // what is told of the first tensor holds for all
+    return true;
 }
 
 const struct edit_light *edit_lights(const struct edit *e, uint32_t *count) {

@@ -219,9 +219,25 @@ static bool same_formula(const struct form_curve *a, const struct form_curve *b)
     return same;
 }
 
+// What the eye would take for the material is then the bins' doing.
+static void warn_of_sharp(struct edited_object *o, const struct form *f, uint32_t curve, const char *at) {
+    static const double rounding = 1e-6;
+    const struct basis *b = &o->curve[curve]->basis;
+    const double most = basis_exponent(b);
+    double asked = 0;
+    for (int k = 0; k < CURVE_CHANNELS; k++)
+        asked = fmax(asked, function_exponent(&f->curve[curve].f[k]));
+    if (o->told_sharp || asked <= most * (1 + rounding))
+        return;
+    o->told_sharp = true;
+    log_warn("%s: %s: a lobe as sharp as cos^%.3g comes out too wide: the %u bins of its curve carry cos^%.3g "
+             "at most. `relume verify` tells the error; a tensor of more bins follows", at, o->name, asked,
+             b->count, most);
+}
+
 // What differs between two makes of the model goes into the object.
 static void take_over(struct edited_object *o, const struct form *before, const struct form *after,
-                      struct edit_touch *touch) {
+                      const char *at, struct edit_touch *touch) {
     for (uint32_t t = 0; t < after->terms; t++)
         for (int k = 0; k < CURVE_CHANNELS; k++)
             if (after->term[t].scale[k] != before->term[t].scale[k])
@@ -229,6 +245,7 @@ static void take_over(struct edited_object *o, const struct form *before, const 
     for (uint32_t c = 0; c < after->curves; c++) {
         if (same_formula(&before->curve[c], &after->curve[c]))
             continue;
+        warn_of_sharp(o, after, c, at);
         for (uint32_t k = 0; k < CURVE_CHANNELS; k++)
             function_project(o->curve[c], k, &after->curve[c].f[k], form_filter(&o->form, c));
         touch->several = touch->curve != EDIT_NOTHING;
@@ -248,7 +265,7 @@ static bool regenerate(struct edited_object *o, const struct model_parameters *p
         good = false;
     }
     if (good) {
-        take_over(o, &before, &after, touch);
+        take_over(o, &before, &after, at, touch);
         o->parameters = *p;
     }
     arena_finish(&arena);

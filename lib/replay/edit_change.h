@@ -4,7 +4,8 @@
 //     set      OBJECT.PARAM=V or OBJECT.TERM.PARAM=V: the model makes its curves anew with that number
 //              (curve/parameters.h); curves whose formula does not change keep what was edited.
 //              Numbers are relative to the scene's textures: reflectance=0.5 halves.
-//              OBJECT.TERM.scale=V: f_q itself. V is a number or, for colours, R,G,B
+//              OBJECT.TERM.scale=V: f_q itself. V is a number or, for colours, R,G,B.
+//              A lobe that is too sharp for the curve's bins is warned of, once for an object
 //     curve    OBJECT.TERM.f_A=FILE.csv (curve/curve.h), brought to the term's own basis
 //     operate  OBJECT.TERM.f_A:amplify-y,a,b,c,d,m[,base];... (curve/operators.h); f_A.r, f_A.gb:
 //              in these channels only

@@ -42,6 +42,7 @@ struct edited_object {
     struct curve *curve[FORM_CURVES];   // its tables, of three channels
     double share[FORM_TERMS][CURVE_CHANNELS];
     const double *albedo[FORM_TERMS];   // NULL: not known
+    bool told_sharp;                    // that lobes are too sharp for its bins is told once
 };
 
 struct edited_block {

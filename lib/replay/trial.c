@@ -7,7 +7,7 @@
 #include "base/mem.h"
 #include "replay/edit_weights.h"
 
-static const double ALBEDO = 0.5, BROAD = 8, CARRIED = 5.2;
+static const double ALBEDO = 0.5, BROAD = 8;
 
 const char *const trial_names[TRIALS] = {"as it is", "dull", "broad", "sharp"};
 
@@ -43,7 +43,7 @@ static size_t count_numbers(const struct edit_tensor *e) {
 
 static void set_lobe(struct curve *c, int trial) {
     const uint32_t n = c->basis.count;
-    const double exponent = trial == 1 ? 0 : trial == 2 ? BROAD : pow(n / CARRIED, 2);
+    const double exponent = trial == 1 ? 0 : trial == 2 ? BROAD : basis_exponent(&c->basis);
     for (uint32_t j = 0; j < n; j++) {
         const double lo = c->basis.knots[j], hi = c->basis.kind == BASIS_BOX ? c->basis.knots[j + 1] : lo;
         const double value = pow(fmax(cos(0.5 * (lo + hi)), 0), exponent);

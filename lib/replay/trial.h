@@ -3,7 +3,7 @@
 // of an approximation is measured.
 //
 // The edits give all objects an albedo of a half at once, by curves that are constant, a broad lobe
-// and the sharpest one that their bins carry (cos^n, n = (J / 5.2)^2 for J bins).
+// and the sharpest one that their bins carry (basis_exponent).
 #pragma once
 
 #include "replay/edit_tensor.h"

@@ -36,6 +36,13 @@ expect 0 "$relume" compare plain.exr same.exr
 expect 0 "$relume" info same.exr
 contains "$out" "variance.Y"
 expect 0 "$relume" edit t.safetensors -o sharp.exr --set cup.specular.exponent=200 --set pot.lid.exponent_v=4
+# Lobes too sharp for 32 nodes, which carry cos^37.9, are warned of, and no others; once.
+[ "$(grep -c "as sharp as cos^200 comes out too wide: the 32 bins .* carry cos^37.9" <<<"$err")" = 1 ] ||
+    fail "a sharp lobe is not told, or twice: $err"
+expect 0 "$relume" edit t.safetensors -o even.exr --set cup.exponent=37 --quiet
+[ -z "$err" ] || fail "a lobe that fits is warned of: $err"
+expect 0 "$relume" edit t.safetensors -o even.exr --set cup.exponent=38 --set cup.exponent=39 --quiet
+[ "$(grep -c "too wide" <<<"$err")" = 1 ] || fail "not one warning: $err"
 differs plain.exr sharp.exr
 expect 0 "$relume" edit t.safetensors -o file.exr --op "cup.specular.f_A:amplify-y,0,0,90,90,2"
 expect 0 "$relume" edit t.safetensors -o double.exr --set cup.specular.scale=1.750704 # (20 + 2) / (4 pi)

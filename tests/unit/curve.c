@@ -45,6 +45,34 @@ static void functions_sum_to_one(void) {
     }
 }
 
+// At what part of a right angle a lobe falls to exp(-1/2) of its top, as cos(g)^n does at 1 / sqrt(n).
+static void lobes_have_exponents(void) {
+    const struct curve_function lobes[] = {
+        {FUNCTION_COS_POWER, .p = {900}}, {FUNCTION_BECKMANN, .p = {0.05}},
+        {FUNCTION_GAUSSIAN, .p = {0.05}}, {FUNCTION_SCHLICK_Z, .p = {0.005}}};
+    for (size_t i = 0; i < sizeof lobes / sizeof *lobes; i++) {
+        const double spread = 1 / sqrt(function_exponent(&lobes[i]));
+        const double fall = function_value(&lobes[i], spread) / function_value(&lobes[i], 0);
+        CHECK_NEAR(fall, exp(-0.5), lobes[i].kind == FUNCTION_SCHLICK_Z ? 0.04 : 2e-3);
+    }
+    const struct curve_function flat = {FUNCTION_CONSTANT, .p = {900}};
+    CHECK(function_exponent(&flat) <= 0);
+}
+
+static void bins_carry_exponents(void) {
+    struct arena arena = {0};
+    for (int i = 0; i < 2; i++) {
+        const enum basis_kind kind = i ? BASIS_HAT : BASIS_BOX;
+        const struct basis even = basis_make(&arena, kind, 128, SPACING_UNIFORM);
+        const struct basis fine = basis_make(&arena, kind, 32, SPACING_QUADRATIC);
+        const struct basis few = basis_make(&arena, kind, 2, SPACING_UNIFORM);
+        CHECK_NEAR(basis_exponent(&even), pow(128 / 5.2, 2), 1e-9);
+        CHECK_NEAR(basis_exponent(&few), pow(2 / 5.2, 2), 1e-12);
+        CHECK(basis_exponent(&fine) > 5 * pow(32 / 5.2, 2));
+    }
+    arena_finish(&arena);
+}
+
 // ---- projection -----------------------------------------------------------------------------
 
 // Integral of a curve times a measure, exactly for the basis.
@@ -333,6 +361,8 @@ static void facet_areas_are_known_for_even_facets(void) {
 
 int main(void) {
     functions_sum_to_one();
+    lobes_have_exponents();
+    bins_carry_exponents();
     means_keep_the_integral();
     boxes_lose_peaks_as_known();
     resampling_keeps_what_fits();
