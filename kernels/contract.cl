@@ -6,17 +6,16 @@
 //                                   start[r] <= i < start[r + 1], in order
 //
 // One work-item a tile and TILE_REDUCED neighbouring r, whose rows of T are neighbours too where the
-// first axis of a matrix is contracted; tiles of t begin with number `first`, those of out with 0.
+// first axis of a matrix is contracted. The next row of a list, for a processor far away then, is sent
+// for while one is added. Tiles of t begin with number `first`, those of out with 0.
 #if !defined(__OPENCL_C_VERSION__)
 #error "OpenCL C is expected"
 #endif
 #pragma OPENCL FP_CONTRACT OFF
 #include "kernels/tile.h"
+#include "kernels/tile_add.h"
 
-#define LOAD_F32(p, i) (p)[i]
-#define LOAD_BF16(p, i) as_float16(convert_uint16((p)[i]) << 16)
-
-#define DEFINE(suffix, type, LOAD)                                                                 \
+#define DEFINE(suffix, type)                                                                       \
     kernel void contract_##suffix(global const type *t, global const float *weight,                \
                                   global const uint *index, global const uint *start,              \
                                   uint coefficients, uint reduced, uint first,                     \
@@ -26,6 +25,7 @@
         const size_t tile = get_global_id(0) / parts;                                              \
         const uint from = get_global_id(0) % parts * TILE_REDUCED;                                 \
         const uint count = min((uint)TILE_REDUCED, reduced - from);                                \
+        const size_t last = start[reduced] - 1;                                                    \
         uint longest = 0;                                                                          \
         for (uint r = 0; r < count; r++) {                                                         \
             longest = max(longest, start[from + r + 1] - start[from + r]);                         \
@@ -38,9 +38,9 @@
                 const size_t i = (size_t)start[from + r] + k;                                      \
                 if (i >= start[from + r + 1])                                                      \
                     continue;                                                                      \
-                global const type *row = t + (size_t)index[i] * TILE_ROW;                          \
-                for (uint v = 0; v < TILE_ROW; v++)                                                \
-                    sum[r][v] += weight[i * TILE_CHANNELS + v / TILE_VECTORS] * LOAD(row, v);      \
+                const size_t later = index[min(i + 1, last)];                                      \
+                add_row_##suffix(t + (size_t)index[i] * TILE_ROW, t + later * TILE_ROW,            \
+                                 weight + i * TILE_CHANNELS, sum[r]);                              \
             }                                                                                      \
         out += (tile * reduced + from) * TILE_ROW;                                                 \
         for (uint r = 0; r < count; r++)                                                           \
@@ -48,5 +48,5 @@
                 out[r * TILE_ROW + v] = sum[r][v];                                                 \
     }
 
-DEFINE(f32, float16, LOAD_F32)
-DEFINE(bf16, ushort16, LOAD_BF16)
+DEFINE(f32, float16)
+DEFINE(bf16, ushort16)
