@@ -162,6 +162,16 @@ struct compute_buffer compute_buffer_wrap(struct compute_device *d, const void *
     return b;
 }
 
+struct compute_buffer compute_buffer_over(struct compute_device *d, void *data, size_t bytes) {
+    cl_int code;
+    const cl_mem_flags use = d->is_cpu ? CL_MEM_USE_HOST_PTR : 0;
+    struct compute_buffer b = {clCreateBuffer(d->context, CL_MEM_READ_WRITE | use, bytes,
+                                              d->is_cpu ? data : NULL, &code), bytes};
+    if (!check(code, "clCreateBuffer"))
+        b = (struct compute_buffer){0};
+    return b;
+}
+
 void compute_buffer_destroy(struct compute_buffer *b) {
     if (b->handle)
         clReleaseMemObject(b->handle);
@@ -178,6 +188,18 @@ bool compute_read(struct compute_device *d, const struct compute_buffer *b, size
                   size_t bytes) {
     return check(clEnqueueReadBuffer(d->queue, b->handle, CL_TRUE, offset, bytes, data, 0, NULL, NULL),
                  "clEnqueueReadBuffer");
+}
+
+bool compute_collect(struct compute_device *d, const struct compute_buffer *b, void *data) {
+    cl_int code;
+    if (!d->is_cpu)
+        return compute_read(d, b, 0, data, b->bytes);
+    void *there = clEnqueueMapBuffer(d->queue, b->handle, CL_TRUE, CL_MAP_READ, 0, b->bytes, 0, NULL,
+                                     NULL, &code);
+    return check(code, "clEnqueueMapBuffer") &&
+           check(clEnqueueUnmapMemObject(d->queue, b->handle, there, 0, NULL, NULL),
+                 "clEnqueueUnmapMemObject") &&
+           compute_wait(d);
 }
 
 bool compute_clear(struct compute_device *d, struct compute_buffer *b) {

@@ -32,6 +32,10 @@ struct compute_buffer compute_buffer_create(struct compute_device *d, size_t byt
 // The device's view of the caller's memory, which must stay and must begin at a multiple of 128: no
 // copy where the device shares the host's memory.
 struct compute_buffer compute_buffer_wrap(struct compute_device *d, const void *data, size_t bytes);
+// Room for results, which compute_collect puts at `data`; that begins like the memory above, and is
+// where the device itself writes if it shares the host's memory.
+struct compute_buffer compute_buffer_over(struct compute_device *d, void *data, size_t bytes);
+bool compute_collect(struct compute_device *d, const struct compute_buffer *b, void *data);
 void compute_buffer_destroy(struct compute_buffer *b);
 bool compute_write(struct compute_device *d, struct compute_buffer *b, size_t offset, const void *data, size_t bytes);
 bool compute_read(struct compute_device *d, const struct compute_buffer *b, size_t offset, void *data, size_t bytes);

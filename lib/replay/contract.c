@@ -12,7 +12,7 @@ enum { MOST_RESULT = 1 << 28 };
 
 struct device_contraction {
     const struct contraction *c;
-    struct compute_buffer weight, index, start, out;
+    struct compute_buffer weight, index, start;
     size_t most; // tiles at once
     struct compute_kernel *kernel;
 };
@@ -30,17 +30,21 @@ static bool run_piece(struct replay *r, const struct device_contraction *d,
     // Rows of all kinds are too different to be done eight at a time.
     const bool rows = b->tensor->storage == TENSOR_ROWS;
     const size_t parts = rows ? d->c->reduced : (d->c->reduced + TILE_REDUCED - 1) / TILE_REDUCED;
+    const size_t floats = (size_t)d->c->reduced * REPLAY_ROW;
+    float *to = out + (chunk->first + first) * floats;
+    struct compute_buffer results = compute_buffer_over(r->device, to, tiles * floats * sizeof *to);
     struct compute_arg args[REPLAY_CHUNK_ARGS + 7];
     const struct compute_arg own[] = {
         COMPUTE_BUFFER(&d->weight), COMPUTE_BUFFER(&d->index), COMPUTE_BUFFER(&d->start),
         COMPUTE_UINT(b->tensor->coefficients), COMPUTE_UINT(d->c->reduced),
-        COMPUTE_UINT((uint32_t)first), COMPUTE_BUFFER(&d->out)};
+        COMPUTE_UINT((uint32_t)first), COMPUTE_BUFFER(&results)};
     const uint32_t n = replay_chunk_args(b, chunk, args);
-    const size_t floats = (size_t)d->c->reduced * REPLAY_ROW;
     memcpy(args + n, own, sizeof own);
-    return compute_run(r->device, d->kernel, tiles * parts, args, n + 7) &&
-           compute_read(r->device, &d->out, 0, out + (chunk->first + first) * floats,
-                        tiles * floats * sizeof *out);
+    const bool good = results.handle &&
+                      compute_run(r->device, d->kernel, tiles * parts, args, n + 7) &&
+                      compute_collect(r->device, &results, to);
+    compute_buffer_destroy(&results);
+    return good;
 }
 
 static bool run_chunks(struct replay *r, struct replay_block *b, const struct device_contraction *d,
@@ -69,14 +73,12 @@ static bool on_device(struct replay *r, struct replay_block *b, const struct con
     d.weight = send(r, c->weight, entries * TILE_CHANNELS * sizeof *c->weight);
     d.index = send(r, c->index, entries * sizeof *c->index);
     d.start = send(r, c->start, ((size_t)c->reduced + 1) * sizeof *c->start);
-    d.out = compute_buffer_create(r->device, d.most * bytes);
     d.kernel = replay_kernel(r, b, "contract", "contract");
-    const bool good = d.weight.handle && d.index.handle && d.start.handle && d.out.handle &&
-                      d.kernel && run_chunks(r, b, &d, out);
+    const bool good = d.weight.handle && d.index.handle && d.start.handle && d.kernel &&
+                      run_chunks(r, b, &d, out);
     compute_buffer_destroy(&d.weight);
     compute_buffer_destroy(&d.index);
     compute_buffer_destroy(&d.start);
-    compute_buffer_destroy(&d.out);
     return good;
 }
 

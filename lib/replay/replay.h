@@ -33,7 +33,8 @@ bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, cons
 bool replay_update_layer(struct replay *r, uint32_t block, uint32_t layer, const uint32_t *terms,
                          const float *weights, uint32_t count);
 bool replay_clear_layer(struct replay *r, uint32_t block, uint32_t layer);
-// Fewer coefficients in place of a block's (replay/tiles.h): out[tile][reduced][channel][lane].
+// Fewer coefficients in place of a block's (replay/tiles.h): out[tile][reduced][channel][lane],
+// which begins at a multiple of TENSOR_ALIGN.
 bool replay_contract(struct replay *r, uint32_t block, const struct contraction *c, float *out);
 // Waits until what was asked for is done.
 bool replay_wait(struct replay *r);
