@@ -174,7 +174,8 @@ struct tensor_writer;
 // Begins a file for a tensor of this shape: everything but values, halves, sums and fixed is taken from
 // `shape` and written at once; a block has halves or sums, and the tensor a fixed picture, where the
 // pointer is not NULL (it is not read). meta: what else is known, merged into the metadata. Atomic: the file
-// appears when the writer is closed. NULL after an error message.
+// appears when the writer is closed, and nothing of it is left where the process is killed before (but on
+// file systems without nameless files, PATH.PID.tmp). NULL after an error message.
 struct tensor_writer *tensor_create(const char *path, const struct tensor *shape);
 // The same for work that may be ended at any moment, even killed: the file is PATH.part until it is
 // closed, and if there is one of the same shape and metadata it is gone on with. *marks: for `parts`

@@ -20,6 +20,7 @@ struct tensor_writer {
     unsigned char *map;
     size_t size, parts; // of the file; marks behind it while it is being made
     bool kept;
+    int nameless; // the file, which has no name yet; -1: it has its temporary one
     unsigned char *data;
     uint64_t *values, *halves, *sums; // offsets by block
     uint64_t fixed, fixed_sums;
@@ -188,16 +189,36 @@ static bool was_begun(const struct tensor_writer *w, int fd, const char *header,
     return same;
 }
 
+// A file that goes when the process is killed, where the file system has such and /proc can name it.
+static int open_nameless(const char *path) {
+    char directory[4096];
+    file_directory(path, directory, sizeof directory);
+    return access("/proc/self/fd", X_OK) == 0 ? open(directory, O_TMPFILE | O_RDWR, 0644) : -1;
+}
+
+static bool give_name(struct tensor_writer *w) {
+    char from[64];
+    snprintf(from, sizeof from, "/proc/self/fd/%d", w->nameless);
+    unlink(w->temp); // of another process that had this number
+    const bool given = linkat(AT_FDCWD, from, AT_FDCWD, w->temp, AT_SYMLINK_FOLLOW) == 0;
+    if (given) {
+        close(w->nameless);
+        w->nameless = -1;
+    }
+    return given;
+}
+
 static bool map_file(struct tensor_writer *w, const char *header, uint64_t n) {
     const size_t size = w->size + w->parts;
-    const int fd = open(w->temp, O_RDWR | O_CREAT, 0644);
+    w->nameless = w->kept ? -1 : open_nameless(w->path);
+    const int fd = w->nameless >= 0 ? w->nameless : open(w->temp, O_RDWR | O_CREAT, 0644);
     int error = fd < 0 || (!was_begun(w, fd, header, n) && ftruncate(fd, 0) != 0) ? errno : 0;
     // Room is taken now: a full disk would otherwise end the process when a page is written.
     error = error ? error : posix_fallocate(fd, 0, (off_t)size);
     void *map = error ? MAP_FAILED : mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
     if (!error && map == MAP_FAILED)
         error = errno;
-    if (fd >= 0)
+    if (fd >= 0 && fd != w->nameless)
         close(fd);
     if (error) {
         log_error("%s: cannot be written (%zu bytes): %s", w->path, w->size, strerror(error));
@@ -248,6 +269,7 @@ static bool make_file(struct tensor_writer *w) {
 // Makes the file under its temporary name. NULL after an error message.
 static struct tensor_writer *begin(struct tensor_writer *w, const struct tensor *shape, bool named) {
     w->shape = shape;
+    w->nameless = -1;
     w->values = mem_array(shape->block_count, sizeof *w->values);
     w->halves = mem_array(shape->block_count, sizeof *w->halves);
     w->sums = mem_array(shape->block_count, sizeof *w->sums);
@@ -303,7 +325,7 @@ double *tensor_fixed_sums(struct tensor_writer *w) {
 }
 
 bool tensor_finish(struct tensor_writer *w) {
-    const bool synced = msync(w->map, w->size, MS_SYNC) == 0 &&
+    const bool synced = msync(w->map, w->size, MS_SYNC) == 0 && (w->nameless < 0 || give_name(w)) &&
                         (!w->kept || truncate(w->temp, (off_t)w->size) == 0);
     if (!synced)
         log_error("%s: cannot be written: %s", w->path, strerror(errno));
@@ -317,7 +339,9 @@ bool tensor_finish(struct tensor_writer *w) {
 void tensor_abandon(struct tensor_writer *w) {
     if (w->map)
         munmap(w->map, w->size + w->parts);
-    if (w->temp[0] && !w->kept)
+    if (w->nameless >= 0)
+        close(w->nameless);
+    else if (w->temp[0] && !w->kept)
         file_discard(w->temp);
     mem_free(w->values);
     mem_free(w->halves);

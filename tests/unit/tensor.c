@@ -2,6 +2,7 @@
 // The tensor file: what was written is read back; what is wrong is refused with a reason.
 #include "transport/tensor.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,6 +40,17 @@ static size_t value_count(const struct tensor_block *b) {
     return tensor_bytes(b) / tensor_value_size(b->storage);
 }
 
+// A process that is killed leaves nothing of a file it had not completed, where files may have no name.
+static void leaves_no_trace(void) {
+    char directory[256], temp[300];
+    file_directory(path, directory, sizeof directory);
+    CHECK(file_temp_name(path, temp, sizeof temp));
+    const int fd = open(directory, O_TMPFILE | O_RDWR, 0644);
+    CHECK(fd < 0 || !file_exists(temp));
+    if (fd >= 0)
+        close(fd);
+}
+
 static void write_file(void) {
     struct tensor t;
     struct tensor_block blocks[2];
@@ -58,6 +70,7 @@ static void write_file(void) {
         small[i] = bf16_from_float((float)i / 8);
     tensor_fixed(w)[20 * 11 - 1] = 7;
     CHECK(!file_exists(path)); // not before it is whole
+    leaves_no_trace();
     CHECK(tensor_finish(w));
     json_destroy(meta);
 }
