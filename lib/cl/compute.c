@@ -4,6 +4,7 @@
 
 #include "cl/compute.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -60,8 +61,11 @@ static bool find_best(cl_device_id *id) {
            find_device(CL_DEVICE_TYPE_ALL, id);
 }
 
-// A driver may call abort() where something of the system is missing: ask in a child first.
-static bool survives_probe(void) {
+static bool survives;
+
+// A driver may call abort() where something of the system is missing: ask in a child first. Only before
+// the driver has threads here, one of which might hold a lock that the child then waits for for ever.
+static void probe(void) {
     int status;
     const pid_t child = fork();
     if (child == 0) {
@@ -72,14 +76,16 @@ static bool survives_probe(void) {
             clCreateContext(NULL, 1, &id, NULL, NULL, &code);
         _exit(code != CL_SUCCESS);
     }
-    return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) &&
-           WEXITSTATUS(status) == 0;
+    survives = child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) &&
+               WEXITSTATUS(status) == 0;
 }
 
 struct compute_device *compute_open(void) {
     cl_int code = 0;
     cl_device_type type = 0;
-    if (!survives_probe()) {
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, probe);
+    if (!survives) {
         log_info("there is no OpenCL device: computing without");
         return NULL;
     }

@@ -3,6 +3,7 @@
 #include "replay/tiles.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -342,9 +343,24 @@ static void tone_map(struct fixture *f) {
     mem_free(frame);
 }
 
+static int forks;
+
+static void count_fork(void) {
+    forks++;
+}
+
+// Once a driver has threads, a child may wait for ever for a lock that one of them held.
+static void opens_again_without_a_child(const struct fixture *f) {
+    CHECK(pthread_atfork(count_fork, NULL, NULL) == 0);
+    struct compute_device *d = compute_open();
+    CHECK(forks == 0 && (d != NULL) == (f->device != NULL));
+    compute_close(d);
+}
+
 int main(void) {
     struct fixture f = {.device = compute_open()};
     fixture_init(&f);
+    opens_again_without_a_child(&f);
     for (int s = TENSOR_F32; s <= TENSOR_BF16; s++) {
         dot(&f, (enum tensor_storage)s);
         add_terms(&f, (enum tensor_storage)s);
