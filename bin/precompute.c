@@ -211,9 +211,16 @@ static bool options_fit(const struct precompute_values *v, bool edit) {
         }
     }
     wrong = !v->direct ? NULL : v->integrator ? "integrator" : v->max_depth ? "max-depth" : NULL;
-    if (wrong)
+    if (wrong) {
         log_error("--%s has no effect on precompute edit --direct, which is direct light only", wrong);
-    return !wrong;
+        return false;
+    }
+    if (edit && v->integrator && strcmp(v->integrator, "path") != 0) {
+        log_error("--integrator %s has no effect on precompute edit, which follows paths as path does",
+                  v->integrator);
+        return false;
+    }
+    return true;
 }
 
 static int run(const void *values, const char *command) {

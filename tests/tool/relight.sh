@@ -77,7 +77,8 @@ for wrong in "--turn 3" "--frames 3 --variance" "--scene scene.xml"; do
 done
 expect 2 "$relume" relight lights.safetensors --save-scene new.xml --time
 for wrong in "relight --edit a" "relight --bounces 2" "relight --direct" "edit --basis sh:2" "edit --lights 40" \
-    "edit --direct --series 8" "edit --direct --max-depth 3"; do
+    "edit --direct --series 8" "edit --direct --max-depth 3" \
+    "edit --edit sky --integrator aov"; do
     # shellcheck disable=SC2086 # words
     expect 2 "$relume" precompute ${wrong%% *} scene.xml -o out.safetensors ${wrong#* }
     contains "$err" "has no effect on"
