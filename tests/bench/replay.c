@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Products of tiles against the speed of memory: full products with 32 and 16 bits, an update of 30
 // terms, OpenCL and C, and plain reading, interleaved; medians. Then, for as many pixels as have the
-// same bytes, curve switching: either axis of 128x128 coefficients contracted; and freezing: 84
-// products of albedos times 64 bins, contracted to the 4 powers of one albedo.
+// same bytes and beside reading again, curve switching: either axis of 128x128 coefficients contracted;
+// and freezing: 84 products of albedos times 64 bins, contracted to the 4 powers of one albedo.
 //
 // usage: replay [PIXELS [COEFFICIENTS]]     (262144 and 256)
 #include "replay/replay.h"
@@ -162,8 +162,8 @@ static struct contraction freezing(uint32_t *coefficients) {
 }
 
 // Takes the values of a tensor as those of a smaller one with more coefficients.
-static void time_contraction(const struct bench *b, double limit, const char *what,
-                             uint32_t coefficients, struct contraction c) {
+static void time_contraction(const struct bench *b, const char *what, uint32_t coefficients,
+                             struct contraction c) {
     struct tensor_block block = b->block[TENSOR_F32];
     block.pixel_count = block.pixel_count * block.coefficients / coefficients / TENSOR_LANES *
                         TENSOR_LANES;
@@ -173,20 +173,25 @@ static void time_contraction(const struct bench *b, double limit, const char *wh
                              .blocks = &block};
     const double gb = (double)tensor_bytes(&block) * 1e-9;
     float *out = mem_array(tensor_tiles(&block) * c.reduced * 3 * TENSOR_LANES, sizeof *out);
-    for (int k = 0; k < 2; k++) {
-        struct replay *r = replay_create(&t, &(struct replay_options){.no_device = k == 1});
-        struct measured m;
-        for (int i = -1; i < REPEATS; i++) {
+    struct replay *r[2];
+    struct measured read, m[2];
+    for (int k = 0; k < 2; k++)
+        r[k] = replay_create(&t, &(struct replay_options){.no_device = k == 1});
+    for (int i = -1; i < REPEATS; i++) { // the first, which is warming up, is written over
+        read.times[i < 0 ? 0 : i] = time_reading(block.values, tensor_bytes(&block));
+        for (int k = 0; k < 2; k++) {
             const double start = time_seconds();
-            replay_contract(r, 0, &c, out);
-            if (i >= 0)
-                m.times[i] = time_seconds() - start;
+            replay_contract(r[k], 0, &c, out);
+            m[k].times[i < 0 ? 0 : i] = time_seconds() - start;
         }
-        const double s = median(&m);
+    }
+    const double limit = gb / median(&read);
+    for (int k = 0; k < 2; k++) {
+        const double s = median(&m[k]);
         printf("%-12.12s %s, %u coefficients to %u: %.1f ms for %llu pixels, %.1f GB/s = %.2f of "
-               "reading\n", replay_device(r), what, coefficients, c.reduced, s * 1e3,
+               "reading\n", replay_device(r[k]), what, coefficients, c.reduced, s * 1e3,
                (unsigned long long)block.pixel_count, gb / s, gb / s / limit);
-        replay_destroy(r);
+        replay_destroy(r[k]);
     }
     mem_free(out);
     mem_free((void *)(uintptr_t)c.start);
@@ -194,12 +199,12 @@ static void time_contraction(const struct bench *b, double limit, const char *wh
     mem_free((void *)(uintptr_t)c.weight);
 }
 
-static void time_contractions(const struct bench *b, double limit) {
+static void time_contractions(const struct bench *b) {
     uint32_t coefficients;
     const struct contraction frozen = freezing(&coefficients);
-    time_contraction(b, limit, "switching to the first curve", SIDE * SIDE, switching(0));
-    time_contraction(b, limit, "switching to the second curve", SIDE * SIDE, switching(1));
-    time_contraction(b, limit, "freezing all objects but one", coefficients, frozen);
+    time_contraction(b, "switching to the first curve", SIDE * SIDE, switching(0));
+    time_contraction(b, "switching to the second curve", SIDE * SIDE, switching(1));
+    time_contraction(b, "freezing all objects but one", coefficients, frozen);
 }
 
 int main(int argc, char **argv) {
@@ -230,7 +235,7 @@ int main(int argc, char **argv) {
                    "%.1f times faster\n", replay_device(b.replay[s][k]), s == TENSOR_F32 ? 32 : 16,
                    p * 1e3, gb / p, gb / p / ((double)bytes * 1e-9 / limit), TERMS, u * 1e3, p / u);
         }
-    time_contractions(&b, (double)bytes * 1e-9 / limit);
+    time_contractions(&b);
     for (int s = 0; s < KINDS; s++)
         for (int k = 0; k < 2; k++)
             replay_destroy(b.replay[s][k]);
