@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 enum { ALIGNMENT = 64, BLOCK_BYTES = 256 * 1024 };
 // What is looked up at random in many small pages waits for the table of pages too: large arrays
@@ -71,6 +72,16 @@ void mem_grow_at(void **data, size_t *capacity, size_t need, size_t size, const 
 size_t mem_peak(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (size_t)usage.ru_maxrss * 1024 : 0;
+}
+
+size_t mem_of_machine(void) {
+    return (size_t)sysconf(_SC_PHYS_PAGES) * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+void mem_will_need(const void *p, size_t bytes) {
+    const size_t into = (size_t)(uintptr_t)p % (size_t)sysconf(_SC_PAGESIZE); // where pages begin
+    if (bytes > 0)
+        madvise((char *)(uintptr_t)p - into, bytes + into, MADV_WILLNEED);
 }
 
 void *arena_alloc(struct arena *a, size_t size) {

@@ -22,6 +22,10 @@ void mem_grow_at(void **data, size_t *capacity, size_t need, size_t size, const 
 
 // Most bytes that were ever resident in this process.
 size_t mem_peak(void);
+// Bytes of memory that the machine has.
+size_t mem_of_machine(void);
+// Asks for a part of a mapped file to be read while something else is done. A wish.
+void mem_will_need(const void *p, size_t bytes);
 
 struct arena {
     struct arena_block *last; // zero-initialise: an empty arena

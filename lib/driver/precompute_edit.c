@@ -3,9 +3,9 @@
 
 #include <stdatomic.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/log.h"
+#include "base/mem.h"
 #include "base/thread.h"
 #include "driver/edit_fixed.h"
 #include "driver/edit_pixels.h"
@@ -150,8 +150,7 @@ static size_t most_coefficients(const struct precompute *p) {
 
 static bool make_workers(struct precompute *p) {
     const size_t n = most_coefficients(p) * CURVE_CHANNELS, halves = p->noisy ? 2 : 1;
-    const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    const double most = p->options->most_memory > 0 ? p->options->most_memory : there / 2;
+    const double most = p->options->most_memory > 0 ? p->options->most_memory : (double)mem_of_machine() / 2;
     p->report->sums_bytes = (uint64_t)p->threads * halves *
                             (n * sizeof(double) + n * LIGHT_LOOP_PIXELS * sizeof(float));
     if ((double)p->report->sums_bytes > most) {

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/mem.h"
 #include "base/thread.h"
 #include "driver/polynomial_describe.h"
 #include "driver/polynomial_layout.h"
@@ -34,8 +34,7 @@ static int threads_of(const struct run *r) {
 // Cuts tiles into strips until the sums of all threads fit. false after an error message.
 static bool fit_memory(struct run *r) {
     struct edit_sums_options *sums = &r->layout.sums;
-    const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    const double most = r->options->most_memory > 0 ? r->options->most_memory : there / 2;
+    const double most = r->options->most_memory > 0 ? r->options->most_memory : (double)mem_of_machine() / 2;
     for (sums->parts = 1; sums->parts <= EDIT_MOST_PARTS; sums->parts *= 2) {
         r->report->sums_bytes = (uint64_t)threads_of(r) * edit_sums_worker_bytes(sums);
         if ((double)r->report->sums_bytes <= most)

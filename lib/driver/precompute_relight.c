@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "base/mem.h"
 #include "base/thread.h"
 #include "curve/wavelet.h"
 #include "driver/origin.h"
@@ -238,8 +238,7 @@ static bool trace(struct plan *p, struct tensor_sums *sums, uint32_t first, uint
 }
 
 static bool memory_suffices(const struct plan *p, struct relight_report *r) {
-    const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-    const double most = p->options->most_memory > 0 ? p->options->most_memory : there / 2;
+    const double most = p->options->most_memory > 0 ? p->options->most_memory : (double)mem_of_machine() / 2;
     r->sums_bytes = (uint64_t)threads_of(p) * tensor_sums_worker_bytes(&p->basis->source);
     if ((double)r->sums_bytes <= most)
         return true;
