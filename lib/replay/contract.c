@@ -52,7 +52,7 @@ static bool run_chunks(struct replay *r, struct replay_block *b, const struct de
     bool good = true;
     for (size_t i = 0; i < b->chunk_count && good; i++) {
         struct replay_chunk *c = &b->chunks[i];
-        good = replay_open_chunk(r, b, c);
+        good = replay_open_chunk(r, b, c) && replay_read_ahead(r, b, i + 1);
         for (size_t first = 0; first < c->tiles && good; first += d->most) {
             const size_t tiles = c->tiles - first < d->most ? c->tiles - first : d->most;
             good = run_piece(r, d, b, c, first, tiles, out);

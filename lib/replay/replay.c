@@ -9,6 +9,8 @@
 #include "base/thread.h"
 #include "replay/tiles.h"
 
+enum { READ_AHEAD = 128 << 20 }; // bytes at once, of tensors larger than memory
+
 // Where tile `tile` of a block's values begins.
 static size_t tile_start(const struct tensor_block *b, size_t tile) {
     return b->storage == TENSOR_ROWS
@@ -26,6 +28,16 @@ bool replay_open_chunk(struct replay *r, const struct replay_block *b, struct re
         c->values = bytes ? compute_buffer_wrap(r->device, (const char *)b->tensor->values + first, bytes)
                           : compute_buffer_wrap(r->device, nothing, sizeof nothing);
     return c->values.handle != NULL;
+}
+
+bool replay_read_ahead(struct replay *r, const struct replay_block *b, size_t chunk) {
+    if (!r->reads_ahead || chunk >= b->chunk_count)
+        return true;
+    const struct replay_chunk *c = &b->chunks[chunk];
+    const size_t first = tile_start(b->tensor, c->first);
+    mem_will_need((const char *)b->tensor->values + first,
+                  tile_start(b->tensor, c->first + c->tiles) - first);
+    return compute_wait(r->device);
 }
 
 void replay_close_chunk(struct replay_chunk *c) {
@@ -121,11 +133,23 @@ static bool prepare_block(struct replay *r, struct replay_block *b) {
            make_chunks(r, b);
 }
 
-// A device that shares the host's memory works on the file where it is mapped.
+static size_t values_size(const struct tensor *t) {
+    size_t bytes = 0;
+    for (uint32_t i = 0; i < t->block_count; i++)
+        bytes += tile_start(&t->blocks[i], tensor_tiles(&t->blocks[i]));
+    return bytes;
+}
+
+// A device that shares the host's memory works on the file where it is mapped; in chunks, the next of
+// which is read meanwhile, where the memory cannot keep it: faults alone get a tenth of a disk's speed.
 static size_t room_of(const struct replay *r, const struct replay_options *options) {
     if (options->most_memory)
         return options->most_memory;
-    return !r->device || compute_is_cpu(r->device) ? SIZE_MAX : compute_memory(r->device);
+    if (!r->device)
+        return SIZE_MAX;
+    if (!compute_is_cpu(r->device))
+        return compute_memory(r->device);
+    return values_size(r->tensor) <= mem_of_machine() / 4 * 3 ? SIZE_MAX : 8 * (size_t)READ_AHEAD;
 }
 
 struct replay *replay_create(const struct tensor *t, const struct replay_options *options) {
@@ -141,6 +165,7 @@ struct replay *replay_create(const struct tensor *t, const struct replay_options
         snprintf(r->name, sizeof r->name, "C, %d threads",
                  r->threads > 0 ? r->threads : thread_default_count());
     r->room = room_of(r, options);
+    r->reads_ahead = r->device && compute_is_cpu(r->device) && r->room < SIZE_MAX;
     r->blocks = mem_array(t->block_count, sizeof *r->blocks);
     for (uint32_t i = 0; i < t->block_count; i++) {
         r->blocks[i].tensor = &t->blocks[i];
@@ -183,8 +208,8 @@ const char *replay_device(const struct replay *r) {
 // ---- products -----------------------------------------------------------------------------------
 
 // Runs a kernel over all chunks of a block: its arguments are the chunk's, `args`, where the sums go
-// and the number of the first.
-static bool run_chunks(struct replay *r, struct replay_block *b, const char *kernel,
+// and the number of the first. whole: it reads all of a chunk.
+static bool run_chunks(struct replay *r, struct replay_block *b, const char *kernel, bool whole,
                        const struct compute_arg *args, uint32_t count, uint32_t layer) {
     struct compute_arg a[REPLAY_CHUNK_ARGS + 6];
     struct compute_kernel *k = replay_kernel(r, b, "dot", kernel);
@@ -198,7 +223,8 @@ static bool run_chunks(struct replay *r, struct replay_block *b, const char *ker
         memcpy(a + n, args, count * sizeof *a);
         a[n + count] = COMPUTE_BUFFER(&b->out);
         a[n + count + 1] = COMPUTE_UINT((uint32_t)(c->first + layer * tensor_tiles(b->tensor)));
-        if (!compute_run(r->device, k, c->tiles, a, n + count + 2))
+        if (!compute_run(r->device, k, c->tiles, a, n + count + 2) ||
+            (whole && !replay_read_ahead(r, b, i + 1)))
             return false;
         replay_close_chunk(c);
     }
@@ -218,7 +244,7 @@ bool replay_product(struct replay *r, uint32_t block, const float *weights) {
     }
     const struct compute_arg args[] = {COMPUTE_BUFFER(&b->weights), COMPUTE_UINT(t->coefficients)};
     return compute_write(r->device, &b->weights, 0, weights, (size_t)t->coefficients * 3 * 4) &&
-           run_chunks(r, b, "dot", args, 2, 0);
+           run_chunks(r, b, "dot", true, args, 2, 0);
 }
 
 bool replay_update(struct replay *r, uint32_t block, const uint32_t *terms, const float *weights,
@@ -242,7 +268,7 @@ bool replay_update_layer(struct replay *r, uint32_t block, uint32_t layer, const
                                        COMPUTE_UINT(count), COMPUTE_UINT(t->coefficients)};
     return compute_write(r->device, &b->weights, 0, weights, (size_t)count * 3 * 4) &&
            compute_write(r->device, &b->terms, 0, terms, (size_t)count * 4) &&
-           run_chunks(r, b, "add_terms", args, 4, layer);
+           run_chunks(r, b, "add_terms", false, args, 4, layer);
 }
 
 bool replay_clear_layer(struct replay *r, uint32_t block, uint32_t layer) {

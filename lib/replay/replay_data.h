@@ -36,7 +36,8 @@ struct replay {
     bool borrowed;                 // the device is another's
     int threads;
     uint32_t layers;
-    size_t room; // bytes of the device that are left for values
+    size_t room;      // bytes of the device that are left for values
+    bool reads_ahead; // replay_read_ahead does
     char name[300];
     struct replay_block *blocks;
 };
@@ -44,6 +45,9 @@ struct replay {
 // The values of a chunk on the device, between open and close. false after an error message.
 bool replay_open_chunk(struct replay *r, const struct replay_block *b, struct replay_chunk *c);
 void replay_close_chunk(struct replay_chunk *c);
+// While the device works on the chunk before: asks for this one where the memory cannot keep them all,
+// and waits for that one. false after an error message.
+bool replay_read_ahead(struct replay *r, const struct replay_block *b, size_t chunk);
 
 // The arguments that say where a chunk's coefficients are; their number.
 uint32_t replay_chunk_args(const struct replay_block *b, const struct replay_chunk *c,
