@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#if defined(__AVX512F__)
+#if defined(__AVX__)
 #include <immintrin.h>
 #endif
 
@@ -66,6 +66,9 @@ static inline wide wide_of_signed_bytes(const int8_t v[WIDE_LANES]) {
 static inline uint32_t wide_bits(wide_mask m) {
 #if defined(__AVX512F__)
     return _mm512_test_epi32_mask((__m512i)m, (__m512i)m);
+#elif defined(__AVX__)
+    const __m256 *half = (const __m256 *)&m;
+    return (uint32_t)_mm256_movemask_ps(half[0]) | (uint32_t)_mm256_movemask_ps(half[1]) << 8;
 #else
     uint32_t bits = 0;
     for (int i = 0; i < WIDE_LANES; i++)
@@ -174,6 +177,40 @@ static inline struct wide3 wide3_negate(wide_mask m, struct wide3 a) {
     return (struct wide3){wide_negate(m, a.x), wide_negate(m, a.y), wide_negate(m, a.z)};
 }
 
+#if defined(__AVX__) && !defined(__AVX512F__)
+// a, b, c, d as rows of four by four matrices side by side, to their columns and back.
+static inline void wide_transpose8(__m256 a, __m256 b, __m256 c, __m256 d, __m256 out[4]) {
+    const __m256d ab_lo = (__m256d)_mm256_unpacklo_ps(a, b), ab_hi = (__m256d)_mm256_unpackhi_ps(a, b);
+    const __m256d cd_lo = (__m256d)_mm256_unpacklo_ps(c, d), cd_hi = (__m256d)_mm256_unpackhi_ps(c, d);
+    out[0] = (__m256)_mm256_unpacklo_pd(ab_lo, cd_lo);
+    out[1] = (__m256)_mm256_unpackhi_pd(ab_lo, cd_lo);
+    out[2] = (__m256)_mm256_unpacklo_pd(ab_hi, cd_hi);
+    out[3] = (__m256)_mm256_unpackhi_pd(ab_hi, cd_hi);
+}
+
+// Eight lanes of wide_gather4 and wide_scatter4.
+static inline void wide_gather8(const float *const row[8], wide out[4], int half) {
+    __m256 r[4];
+    for (int k = 0; k < 4; k++)
+        r[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row[k])),
+                                    _mm_loadu_ps(row[k + 4]), 1);
+    wide_transpose8(r[0], r[1], r[2], r[3], r);
+    for (int k = 0; k < 4; k++)
+        ((__m256 *)&out[k])[half] = r[k];
+}
+
+static inline void wide_scatter8(const wide in[4], float *const row[8], int half) {
+    __m256 r[4];
+    for (int k = 0; k < 4; k++)
+        r[k] = ((const __m256 *)&in[k])[half];
+    wide_transpose8(r[0], r[1], r[2], r[3], r);
+    for (int k = 0; k < 4; k++) {
+        _mm_storeu_ps(row[k], _mm256_castps256_ps128(r[k]));
+        _mm_storeu_ps(row[k + 4], _mm256_extractf128_ps(r[k], 1));
+    }
+}
+#endif
+
 // Four numbers that lie together in memory for each lane: out[k] lane i is row[i][k].
 static inline void wide_gather4(const float *const row[WIDE_LANES], wide out[4]) {
 #if defined(__AVX512F__)
@@ -192,6 +229,9 @@ static inline void wide_gather4(const float *const row[WIDE_LANES], wide out[4])
     out[1] = (wide)_mm512_unpackhi_pd(a, c);
     out[2] = (wide)_mm512_unpacklo_pd(b, d);
     out[3] = (wide)_mm512_unpackhi_pd(b, d);
+#elif defined(__AVX__)
+    for (int half = 0; half < 2; half++)
+        wide_gather8(row + 8 * half, out, half);
 #else
     for (int i = 0; i < WIDE_LANES; i++)
         for (int k = 0; k < 4; k++)
@@ -214,6 +254,9 @@ static inline void wide_scatter4(const wide in[4], float *const row[WIDE_LANES])
         _mm_storeu_ps(row[k + 8], _mm512_extractf32x4_ps(r[k], 2));
         _mm_storeu_ps(row[k + 12], _mm512_extractf32x4_ps(r[k], 3));
     }
+#elif defined(__AVX__)
+    for (int half = 0; half < 2; half++)
+        wide_scatter8(in, row + 8 * half, half);
 #else
     for (int i = 0; i < WIDE_LANES; i++)
         for (int k = 0; k < 4; k++)

@@ -25,6 +25,9 @@ static inline wide wide_from_doubles(wide_double a, wide_double b) {
 static inline uint32_t wide_long_bits(wide_long m) {
 #if defined(__AVX512F__)
     return _mm512_test_epi64_mask((__m512i)m, (__m512i)m);
+#elif defined(__AVX__)
+    const __m256d *half = (const __m256d *)&m;
+    return (uint32_t)_mm256_movemask_pd(half[0]) | (uint32_t)_mm256_movemask_pd(half[1]) << 4;
 #else
     uint32_t bits = 0;
     for (int i = 0; i < 8; i++)
