@@ -171,7 +171,7 @@ static wide_mask line_meets(const struct few_facet *f, struct wide3 d, struct wi
         all += sides[3];
     }
     const wide slack = tolerated * wide_abs(all);
-    return (least >= -slack) | (most <= slack);
+    return wide_either(least >= -slack, most <= slack);
 }
 
 // Where the rays meet the facet's plane, and which do so between tmin and tmax: t is distance over
@@ -183,7 +183,7 @@ static wide_mask meet_plane(const struct few_facet *f, const struct accel_rays *
     const wide along = dot_with(f->normal, r->d);
     *distance = wide_negate(along < 0, dot_with(f->normal, to_corner));
     *speed = wide_abs(along);
-    return (*distance > r->tmin * *speed) & (*distance < tmax * *speed);
+    return wide_both(*distance > r->tmin * *speed, *distance < tmax * *speed);
 }
 
 // Lanes whose ray may meet the quadric before tmax: none that does is left out.
@@ -193,8 +193,8 @@ static uint32_t come_near(const struct few_quadric *q, const struct accel_rays *
     const struct wide3 off = {to.x - t * r->d.x, to.y - t * r->d.y, to.z - t * r->d.z};
     const wide radius = q->radius + 1e-6f * wide_sqrt(wide_dot(to, to));
     const wide half = radius / wide_sqrt(d2) + 1e-6f * wide_abs(t);
-    return wide_bits((wide_dot(off, off) <= radius * radius) & (t + half >= r->tmin) &
-                     (t - half <= tmax));
+    const wide_mask within = wide_both(t + half >= r->tmin, t - half <= tmax);
+    return wide_bits(wide_both(wide_dot(off, off) <= radius * radius, within));
 }
 
 // Of those lanes, the ones that meet it before tmax, and where.
@@ -255,7 +255,7 @@ static void set_hit(const struct few_facet *f, wide_mask hit, const struct accel
     }
     const wide diagonal = side(f, FACET_DIAGONAL, r->d, o_cross_d);
     const wide_mask back = sides[0] + sides[1] + sides[2] + sides[3] < 0;
-    const wide_mask second = wide_negate(back, diagonal) > 0;
+    const wide_mask second = wide_whole(wide_negate(back, diagonal) > 0);
     set_weights(hit & ~second, (const wide[3]){sides[1], -diagonal, sides[0]}, f->first[0], b);
     set_weights(hit & second, (const wide[3]){sides[2], sides[3], diagonal}, f->first[1], b);
     b->second = (second & hit) | (b->second & ~hit);

@@ -57,7 +57,7 @@ static struct wide3 eval(const struct wide_closures *closures, const struct wide
     const struct roughconductor_lanes *c = (const void *)closures;
     const struct wide3 none = {0}, h = wide_normalize(wide3_add(c->wo, *wi));
     const wide pdf = wide_microfacet_D(&c->facets, h) * c->quarter_area;
-    const wide_mask some = (wi->z > 0) & (pdf > 0);
+    const wide_mask some = wide_both(wi->z > 0, pdf > 0);
     *pdf_sa = wide_select(some, pdf, none.x);
     return wide3_select(some, wide3_scale(pdf, quotient(c, h, *wi)), none);
 }
@@ -71,7 +71,7 @@ static wide_mask sample(const struct wide_closures *closures, wide u1, const wid
     s->pdf_sa = wide_microfacet_D(&c->facets, h) * c->quarter_area;
     s->weight = quotient(c, h, s->wi);
     s->lobe = (wide_uint)wide_int_of(LOBE_GLOSSY | LOBE_REFLECTION);
-    return (s->wi.z > 0) & (s->pdf_sa > 0);
+    return wide_both(s->wi.z > 0, s->pdf_sa > 0);
 }
 
 const struct wide_bsdf roughconductor_wide[] = {

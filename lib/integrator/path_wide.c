@@ -126,7 +126,7 @@ static void add_emission(struct trace_context *ctx, const struct path *p, const 
 // mis_weight
 static wide mis_weights(wide pdf, wide other) {
     const wide r = other / pdf, none = {0};
-    return wide_select((pdf > 0) & (r < 1e15f), 1 / (1 + r * r), none);
+    return wide_select(wide_both(pdf > 0, r < 1e15f), 1 / (1 + r * r), none);
 }
 
 static void scatter3(struct vertices *v, size_t offset, struct wide3 in) {
@@ -161,7 +161,7 @@ static void light(const struct path *p, struct trace_context *ctx, struct vertic
     const struct wide3 f = v->kind->eval(&at->closures, &wi, &pdf);
     const wide share = wide_select(wide_mask_of(l.delta), wide_of(1), mis_weights(l.s.pdf_sa, pdf));
     const wide scale = share / l.s.pdf_sa;
-    lit &= wide_bits((f.x != 0) | (f.y != 0) | (f.z != 0));
+    lit &= ~wide_bits(wide_is_black(f));
     for (uint32_t left = ctx->world->links ? lit : 0; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
         if (!world_links(ctx->world, l.light[i], v->hit[i]->shape))
@@ -224,7 +224,7 @@ static uint32_t scatter(const struct path *p, struct vertices *v, uint32_t wante
     if (p->strict_normals)
         alive &= wide_bits(wide_dot(wi, at->s.ng) * b.wi.z > 0);
     struct wide3 beta = {v->beta.x * b.weight.x, v->beta.y * b.weight.y, v->beta.z * b.weight.z};
-    alive &= wide_bits((beta.x != 0) | (beta.y != 0) | (beta.z != 0));
+    alive &= ~wide_bits(wide_is_black(beta));
     const wide_uint depth = v->depth + 1;
     alive = survive(p, v, alive, depth, &beta);
     scatter3(v, offsetof(struct lane, beta), beta);
@@ -261,9 +261,9 @@ static void choose(struct vertices *v, struct lane *lanes, const struct packet *
 static uint32_t look(const struct path *p, const struct vertices *v, struct wide3 back,
                      struct shading *at) {
     const wide up = wide_dot(back, at->s.frame.n);
-    at->below = up < 0;
+    at->below = wide_whole(up < 0);
     at->side = wide3_negate(at->below, at->s.frame.n);
-    uint32_t goes_on = v->active & wide_bits((up > 0) | (at->below & v->two_sided));
+    uint32_t goes_on = v->active & wide_bits(wide_whole(up > 0) | (at->below & v->two_sided));
     if (p->max_depth >= 0)
         goes_on &= wide_bits((wide_mask)(v->events + 1 < (uint32_t)p->max_depth));
     if (p->strict_normals)

@@ -242,7 +242,7 @@ wide_mask area_rectangle_sample_wide(const struct area_mesh *a, const struct wid
     s->wi = wide_normalize(d);
     const wide cosine = -wide_dot(s->wi, s->n);
     const wide by_area = a->inv_area * s->distance * s->distance / cosine;
-    const wide_mask lit = (cosine > 0) & (by_area < INFINITY) & (by_area > 0);
+    const wide_mask lit = wide_both(cosine > 0, wide_both(by_area < INFINITY, by_area > 0));
     s->pdf_sa = wide_select(solid_angle > 0, 1 / solid_angle, by_area);
     return lit;
 }

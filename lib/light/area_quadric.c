@@ -253,7 +253,7 @@ wide_mask area_sphere_sample_wide(const struct area_quadric *q, const struct wid
     s->wi = wide_normalize(d);
     s->distance = wide_sqrt(wide_dot(d, d));
     s->pdf_sa = 1 / (TWO_PI * cone_height_wide(sin2_max));
-    return (d2 > r2) & (s->distance > 0);
+    return wide_both(d2 > r2, s->distance > 0);
 }
 
 bool area_quadric_sample(const struct area_quadric *q, vec3 p, struct vec2 u,

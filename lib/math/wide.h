@@ -62,6 +62,25 @@ static inline wide wide_of_signed_bytes(const int8_t v[WIDE_LANES]) {
 #endif
 }
 
+// The mask as it is. Where masks are joined that come straight from comparisons, clang joins one byte
+// a lane and packs and unpacks for it: three times the instructions. What passes here it leaves alone.
+static inline wide_mask wide_whole(wide_mask m) {
+#if defined(__clang__) && defined(__AVX__) && !defined(__AVX512F__)
+    __m256 *half = (__m256 *)&m;
+    __asm__("" : "+x"(half[0]), "+x"(half[1]));
+#endif
+    return m;
+}
+
+// Of comparisons: a & b, and a | b.
+static inline wide_mask wide_both(wide_mask a, wide_mask b) {
+    return wide_whole(a) & wide_whole(b);
+}
+
+static inline wide_mask wide_either(wide_mask a, wide_mask b) {
+    return wide_whole(a) | wide_whole(b);
+}
+
 // One bit a lane.
 static inline uint32_t wide_bits(wide_mask m) {
 #if defined(__AVX512F__)

@@ -11,7 +11,7 @@ static inline struct wide3 wide_normalize(struct wide3 a) {
     const wide l2 = wide_dot(a, a);
     const wide scale = 1 / wide_sqrt(l2);
     struct wide3 n = {a.x * scale, a.y * scale, a.z * scale};
-    const uint32_t extreme = ~wide_bits((l2 > 1e-30f) & (l2 < 1e30f)) & 0xffff;
+    const uint32_t extreme = ~wide_bits(wide_both(l2 > 1e-30f, l2 < 1e30f)) & 0xffff;
     for (uint32_t left = extreme; __builtin_expect(left != 0, 0); left &= left - 1) {
         const int i = __builtin_ctz(left);
         wide3_set_lane(&n, i, normalize(wide3_lane(&a, i)));
@@ -22,6 +22,10 @@ static inline struct wide3 wide_normalize(struct wide3 a) {
 static inline struct wide3 wide_reflect(struct wide3 w, struct wide3 n) {
     const wide twice = 2 * wide_dot(w, n);
     return wide3_sub(wide3_scale(twice, n), w);
+}
+
+static inline wide_mask wide_is_black(struct wide3 a) {
+    return wide_both(a.x == 0, wide_both(a.y == 0, a.z == 0));
 }
 
 struct wide_frame {
@@ -75,7 +79,8 @@ static inline struct wide3 wide_offset_point(struct wide3 p, struct wide3 error,
 
 static inline struct wide3 wide_cosine_hemisphere(const wide u[2]) {
     const wide x = 2 * u[0] - 1, y = 2 * u[1] - 1, none = {0};
-    const wide_mask flat = wide_abs(x) > wide_abs(y), middle = (x == 0) & (y == 0);
+    const wide_mask flat = wide_whole(wide_abs(x) > wide_abs(y));
+    const wide_mask middle = wide_both(x == 0, y == 0);
     const wide r = wide_select(flat, x, y);
     wide sine, cosine;
     wide_sincos_octant((PI / 4) * (wide_select(flat, y, x) / r), &sine, &cosine);
