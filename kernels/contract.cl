@@ -2,12 +2,12 @@
 // From many coefficients to few, before a frame is asked for: what stays as it is while one curve of
 // one object is edited (other curves, other objects) goes into the coefficients.
 //
-//     out[tile][r][channel][lane] = sum_i weight[i][channel] T[tile][index[i]][channel][lane],
-//                                   start[r] <= i < start[r + 1], in order
+//     out[tile][target[i]][channel][lane] += weight[i][channel] T[tile][index[i]][channel][lane],
+//                                            start[run] <= i < start[run + 1], in order
 //
-// One work-item a tile and TILE_REDUCED neighbouring r, whose rows of T are neighbours too where the
-// first axis of a matrix is contracted. The next row of a list, for a processor far away then, is sent
-// for while one is added. Tiles of t begin with number `first`, those of out with 0.
+// One work-item a tile and a run, which makes TILE_REDUCED neighbouring coefficients: few enough for their
+// sums to stay in a cache, while the rows of T come in the order in which they lie in memory.
+// Tiles of t begin with number `first`, those of out with 0.
 #if !defined(__OPENCL_C_VERSION__)
 #error "OpenCL C is expected"
 #endif
@@ -16,36 +16,22 @@
 #include "kernels/tile_add.h"
 
 #define DEFINE(suffix, type)                                                                       \
-    kernel void contract_##suffix(global const type *t, global const float *weight,                \
-                                  global const uint *index, global const uint *start,              \
-                                  uint coefficients, uint reduced, uint first,                     \
-                                  global float16 *out) {                                           \
-        float16 sum[TILE_REDUCED][TILE_ROW];                                                       \
-        const uint parts = (reduced + TILE_REDUCED - 1) / TILE_REDUCED;                            \
-        const size_t tile = get_global_id(0) / parts;                                              \
-        const uint from = get_global_id(0) % parts * TILE_REDUCED;                                 \
-        const uint count = min((uint)TILE_REDUCED, reduced - from);                                \
-        const size_t last = start[reduced] - 1;                                                    \
-        uint longest = 0;                                                                          \
-        for (uint r = 0; r < count; r++) {                                                         \
-            longest = max(longest, start[from + r + 1] - start[from + r]);                         \
-            for (uint v = 0; v < TILE_ROW; v++)                                                    \
-                sum[r][v] = 0;                                                                     \
-        }                                                                                          \
+    kernel void contract_##suffix(global const type *restrict t, global const uint *target,        \
+                                  global const float *weight, global const uint *index,            \
+                                  global const uint *start, uint coefficients, uint reduced,       \
+                                  uint first, global float16 *restrict out) {                      \
+        const uint runs = (reduced + TILE_REDUCED - 1) / TILE_REDUCED;                             \
+        const size_t tile = get_global_id(0) / runs;                                               \
+        const uint run = get_global_id(0) % runs;                                                  \
+        const uint from = run * TILE_REDUCED, end = min(from + TILE_REDUCED, reduced);             \
         t += (first + tile) * coefficients * TILE_ROW;                                             \
-        for (uint k = 0; k < longest; k++)                                                         \
-            for (uint r = 0; r < count; r++) {                                                     \
-                const size_t i = (size_t)start[from + r] + k;                                      \
-                if (i >= start[from + r + 1])                                                      \
-                    continue;                                                                      \
-                const size_t later = index[min(i + 1, last)];                                      \
-                add_row_##suffix(t + (size_t)index[i] * TILE_ROW, t + later * TILE_ROW,            \
-                                 weight + i * TILE_CHANNELS, sum[r]);                              \
-            }                                                                                      \
-        out += (tile * reduced + from) * TILE_ROW;                                                 \
-        for (uint r = 0; r < count; r++)                                                           \
-            for (uint v = 0; v < TILE_ROW; v++)                                                    \
-                out[r * TILE_ROW + v] = sum[r][v];                                                 \
+        out += tile * reduced * TILE_ROW;                                                          \
+        for (uint k = from * TILE_ROW; k < end * TILE_ROW; k++)                                    \
+            out[k] = 0;                                                                            \
+        for (uint i = start[run]; i < start[run + 1]; i++)                                         \
+            add_row_to_##suffix(t + (size_t)index[i] * TILE_ROW, 0,                                \
+                                weight + (size_t)i * TILE_CHANNELS,                                \
+                                out + (size_t)target[i] * TILE_ROW);                               \
     }
 
 DEFINE(f32, float16)

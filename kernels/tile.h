@@ -10,4 +10,4 @@
 #define TILE_VECTORS 4
 #define TILE_CHANNELS 3
 #define TILE_ROW (TILE_CHANNELS * TILE_VECTORS)
-#define TILE_REDUCED 8 // coefficients that a work-item of contract makes
+#define TILE_REDUCED 64 // coefficients that a work-item of contract makes: 48 kB

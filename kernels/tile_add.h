@@ -24,9 +24,9 @@
 #define TILE_LINE(type) (64 / sizeof(type))
 
 // sum += weight * row; later NULL: nothing is sent for.
-#define TILE_DEFINE_ADD(suffix, type, LOAD)                                                        \
-    TILE_INLINE void add_row_##suffix(global const type *row, global const type *later,            \
-                                      global const float *weight, float16 *sum) {                  \
+#define TILE_DEFINE_ADD(name, type, LOAD, space)                                                   \
+    TILE_INLINE void name(global const type *row, global const type *later,                        \
+                          global const float *weight, space float16 *sum) {                        \
         _Pragma("unroll") for (uint v = 0; v < TILE_ROW; v++) {                                    \
             if (later && v % TILE_LINE(type) == 0)                                                 \
                 TILE_PREFETCH(later + v);                                                          \
@@ -34,5 +34,7 @@
         }                                                                                          \
     }
 
-TILE_DEFINE_ADD(f32, float16, LOAD_F32)
-TILE_DEFINE_ADD(bf16, ushort16, LOAD_BF16)
+TILE_DEFINE_ADD(add_row_f32, float16, LOAD_F32, private)
+TILE_DEFINE_ADD(add_row_bf16, ushort16, LOAD_BF16, private)
+TILE_DEFINE_ADD(add_row_to_f32, float16, LOAD_F32, global)
+TILE_DEFINE_ADD(add_row_to_bf16, ushort16, LOAD_BF16, global)

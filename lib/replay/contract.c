@@ -12,7 +12,7 @@ enum { MOST_RESULT = 1 << 28 };
 
 struct device_contraction {
     const struct contraction *c;
-    struct compute_buffer weight, index, start;
+    struct compute_buffer weight, index, target, start;
     size_t most; // tiles at once
     struct compute_kernel *kernel;
 };
@@ -27,21 +27,20 @@ static struct compute_buffer send(struct replay *r, const void *data, size_t byt
 static bool run_piece(struct replay *r, const struct device_contraction *d,
                       const struct replay_block *b, const struct replay_chunk *chunk, size_t first,
                       size_t tiles, float *out) {
-    // Rows of all kinds are too different to be done eight at a time.
-    const bool rows = b->tensor->storage == TENSOR_ROWS;
-    const size_t parts = rows ? d->c->reduced : (d->c->reduced + TILE_REDUCED - 1) / TILE_REDUCED;
     const size_t floats = (size_t)d->c->reduced * REPLAY_ROW;
     float *to = out + (chunk->first + first) * floats;
     struct compute_buffer results = compute_buffer_over(r->device, to, tiles * floats * sizeof *to);
-    struct compute_arg args[REPLAY_CHUNK_ARGS + 7];
+    struct compute_arg args[REPLAY_CHUNK_ARGS + 8];
     const struct compute_arg own[] = {
         COMPUTE_BUFFER(&d->weight), COMPUTE_BUFFER(&d->index), COMPUTE_BUFFER(&d->start),
         COMPUTE_UINT(b->tensor->coefficients), COMPUTE_UINT(d->c->reduced),
         COMPUTE_UINT((uint32_t)first), COMPUTE_BUFFER(&results)};
-    const uint32_t n = replay_chunk_args(b, chunk, args);
+    uint32_t n = replay_chunk_args(b, chunk, args);
+    if (d->c->together > 1)
+        args[n++] = COMPUTE_BUFFER(&d->target);
     memcpy(args + n, own, sizeof own);
     const bool good = results.handle &&
-                      compute_run(r->device, d->kernel, tiles * parts, args, n + 7) &&
+                      compute_run(r->device, d->kernel, tiles * contraction_runs(d->c), args, n + 7) &&
                       compute_collect(r->device, &results, to);
     compute_buffer_destroy(&results);
     return good;
@@ -64,7 +63,7 @@ static bool run_chunks(struct replay *r, struct replay_block *b, const struct de
 
 static bool on_device(struct replay *r, struct replay_block *b, const struct contraction *c,
                       float *out) {
-    const size_t entries = c->start[c->reduced], bytes = (size_t)c->reduced * REPLAY_ROW * 4;
+    const size_t entries = c->start[contraction_runs(c)], bytes = (size_t)c->reduced * REPLAY_ROW * 4;
     const size_t limit = compute_most_allocation(r->device) < MOST_RESULT
                              ? compute_most_allocation(r->device) : MOST_RESULT;
     const size_t tiles = tensor_tiles(b->tensor);
@@ -72,12 +71,14 @@ static bool on_device(struct replay *r, struct replay_block *b, const struct con
     d.most = d.most < tiles ? d.most : tiles;
     d.weight = send(r, c->weight, entries * TILE_CHANNELS * sizeof *c->weight);
     d.index = send(r, c->index, entries * sizeof *c->index);
-    d.start = send(r, c->start, ((size_t)c->reduced + 1) * sizeof *c->start);
+    d.target = send(r, c->target, entries * sizeof *c->target);
+    d.start = send(r, c->start, ((size_t)contraction_runs(c) + 1) * sizeof *c->start);
     d.kernel = replay_kernel(r, b, "contract", "contract");
-    const bool good = d.weight.handle && d.index.handle && d.start.handle && d.kernel &&
-                      run_chunks(r, b, &d, out);
+    const bool good = d.weight.handle && d.index.handle && d.target.handle && d.start.handle &&
+                      d.kernel && run_chunks(r, b, &d, out);
     compute_buffer_destroy(&d.weight);
     compute_buffer_destroy(&d.index);
+    compute_buffer_destroy(&d.target);
     compute_buffer_destroy(&d.start);
     return good;
 }

@@ -142,32 +142,18 @@ static double *find_weights(const struct edit_focus *f, const struct edit_tensor
     return all;
 }
 
-void edit_focus_contraction(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block,
-                            const double (*values)[CURVE_CHANNELS], struct arena *arena,
-                            struct contraction *c) {
-    const uint32_t n = e->tensor->blocks[block].coefficients;
+struct contraction edit_focus_contraction(const struct edit_focus *f, const struct edit_tensor *e,
+                                          uint32_t block, const double (*values)[CURVE_CHANNELS],
+                                          struct arena *arena) {
+    const struct tensor_block *b = &e->tensor->blocks[block];
     const unsigned axes = edit_focus_axes(f, e, block);
-    const uint32_t reduced = edit_focus_coefficients(f, e, block);
-    uint32_t *target = mem_array(n, sizeof *target), *next = mem_array(reduced, sizeof *next);
-    uint32_t *start = arena_alloc(arena, ((size_t)reduced + 1) * sizeof *start);
-    uint32_t *index = arena_alloc(arena, (size_t)n * sizeof *index);
-    float *weight = arena_alloc(arena, (size_t)n * 3 * sizeof *weight);
-    double *all = find_weights(f, e, block, values, axes);
-    find_targets(f, &e->tensor->blocks[block], axes, target);
-    for (uint32_t i = 0; i < n; i++)
-        start[target[i] + 1]++;
-    for (uint32_t r = 0; r < reduced; r++) {
-        start[r + 1] += start[r];
-        next[r] = start[r];
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t at = next[target[i]]++;
-        index[at] = i;
-        for (size_t k = 0; k < 3; k++)
-            weight[3 * (size_t)at + k] = (float)all[3 * (size_t)i + k];
-    }
-    *c = (struct contraction){reduced, start, index, weight};
+    uint32_t *target = mem_array(b->coefficients, sizeof *target);
+    double *weights = find_weights(f, e, block, values, axes);
+    find_targets(f, b, axes, target);
+    const struct contraction c =
+        contraction_of(b->storage, b->coefficients, edit_focus_coefficients(f, e, block), target,
+                       weights, arena);
     mem_free(target);
-    mem_free(next);
-    mem_free(all);
+    mem_free(weights);
+    return c;
 }

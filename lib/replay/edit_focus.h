@@ -12,7 +12,7 @@
 #pragma once
 
 #include "replay/edit_weights.h"
-#include "replay/tiles.h"
+#include "replay/contraction.h"
 
 enum { FOCUS_MOST = 2 };
 
@@ -46,6 +46,6 @@ uint32_t edit_focus_coefficients(const struct edit_focus *f, const struct edit_t
 
 // The map from a block's coefficients to those that remain, with the factors' values as they are.
 // Memory from the arena.
-void edit_focus_contraction(const struct edit_focus *f, const struct edit_tensor *e, uint32_t block,
-                            const double (*values)[CURVE_CHANNELS], struct arena *arena,
-                            struct contraction *c);
+struct contraction edit_focus_contraction(const struct edit_focus *f, const struct edit_tensor *e,
+                                          uint32_t block, const double (*values)[CURVE_CHANNELS],
+                                          struct arena *arena);

@@ -153,7 +153,6 @@ static bool stays(const struct edit_part *e, uint32_t block) {
 
 static bool contract_block(struct edit_part *e, uint32_t block, struct tensor_block *out) {
     struct arena arena = {0};
-    struct contraction c;
     const struct tensor_block *b = &e->objects.tensor->blocks[block];
     *out = *b;
     out->coefficients = edit_focus_coefficients(&e->focus, &e->objects, block);
@@ -164,8 +163,9 @@ static bool contract_block(struct edit_part *e, uint32_t block, struct tensor_bl
     out->storage = TENSOR_F32;
     float *values = edit_stage_values(&e->rest.blocks[block], tensor_bytes(out) / sizeof *values);
     out->values = values;
-    edit_focus_contraction(&e->focus, &e->objects, block,
-                           (const double(*)[CURVE_CHANNELS])e->factors, &arena, &c);
+    const struct contraction c =
+        edit_focus_contraction(&e->focus, &e->objects, block,
+                               (const double(*)[CURVE_CHANNELS])e->factors, &arena);
     const bool done = replay_contract(e->whole.replay, block, &c, values);
     arena_finish(&arena);
     return done;

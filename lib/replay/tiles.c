@@ -36,6 +36,14 @@ static void add_bf16(const uint16_t *restrict row, const float *weight, float *r
     }
 }
 
+// A row of numbers of one kind.
+static inline void add_row(const struct tensor_data *t, size_t row, const float *weight, float *sum) {
+    if (t->storage == TENSOR_F32)
+        add_floats((const float *)t->data + row * ROW, weight, sum);
+    else
+        add_bf16((const uint16_t *)t->data + row * ROW, weight, sum);
+}
+
 // sum += sum_k weight[k] row[index[k]], or row[k] where index is NULL; one channel after the other.
 static void add_rows(const struct run *r, size_t tile, const uint32_t *index, const float *weight,
                      uint32_t count, float *sum) {
@@ -43,13 +51,8 @@ static void add_rows(const struct run *r, size_t tile, const uint32_t *index, co
         rows_add(&r->t.rows, r->t.data, r->coefficients, tile, index, weight, count, sum);
         return;
     }
-    for (uint32_t k = 0; k < count; k++, weight += TILE_CHANNELS) {
-        const size_t at = (tile * r->coefficients + (index ? index[k] : k)) * ROW;
-        if (r->t.storage == TENSOR_F32)
-            add_floats((const float *)r->t.data + at, weight, sum);
-        else
-            add_bf16((const uint16_t *)r->t.data + at, weight, sum);
-    }
+    for (uint32_t k = 0; k < count; k++, weight += TILE_CHANNELS)
+        add_row(&r->t, tile * r->coefficients + (index ? index[k] : k), weight, sum);
 }
 
 static void dot_tile(void *ctx, size_t tile, int worker) {
@@ -103,15 +106,26 @@ void tiles_add_layers(const float *layer, uint32_t layers, size_t tiles, float *
     thread_for(threads, tiles, add_layers_tile, &l);
 }
 
+static void add_run(const struct run *r, size_t tile, const struct contraction *c, uint32_t run,
+                    float *out) {
+    const uint32_t first = c->start[run], end = c->start[run + 1];
+    const float *weight = c->weight + (size_t)first * TILE_CHANNELS;
+    if (c->together == 1) {
+        add_rows(r, tile, c->index + first, weight, end - first, out + (size_t)run * ROW);
+        return;
+    }
+    for (uint32_t i = first; i < end; i++, weight += TILE_CHANNELS)
+        add_row(&r->t, tile * r->coefficients + c->index[i], weight, out + (size_t)c->target[i] * ROW);
+}
+
 static void contract_tile(void *ctx, size_t tile, int worker) {
     const struct run *r = ctx;
     const struct contraction *c = r->contraction;
     float *out = r->out + tile * c->reduced * ROW;
     (void)worker;
     memset(out, 0, (size_t)c->reduced * ROW * sizeof *out);
-    for (uint32_t k = 0; k < c->reduced; k++)
-        add_rows(r, tile, c->index + c->start[k], c->weight + (size_t)c->start[k] * TILE_CHANNELS,
-                 c->start[k + 1] - c->start[k], out + (size_t)k * ROW);
+    for (uint32_t k = 0; k < contraction_runs(c); k++)
+        add_run(r, tile, c, k, out);
 }
 
 void tiles_contract(struct tensor_data t, const struct contraction *c, uint32_t coefficients,

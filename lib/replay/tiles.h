@@ -6,7 +6,7 @@
 // device.
 #pragma once
 
-#include "transport/tensor.h"
+#include "replay/contraction.h"
 
 // out[tile][channel][lane] = sum_c weight[c][channel] T[tile][c][channel][lane]
 void tiles_dot(struct tensor_data t, const float *weight, uint32_t coefficients, size_t tiles,
@@ -19,16 +19,7 @@ void tiles_add_terms(struct tensor_data t, const float *weight,
 // out[tile][channel][lane] = sum_l layer[l][tile][channel][lane]
 void tiles_add_layers(const float *layer, uint32_t layers, size_t tiles, float *out, int threads);
 
-// A linear map of coefficients to fewer ones: number r is the sum of weight[i] times coefficient
-// index[i] over start[r] <= i < start[r + 1].
-struct contraction {
-    uint32_t reduced;
-    const uint32_t *start; // reduced + 1
-    const uint32_t *index;
-    const float *weight; // [i][channel]
-};
-
-// out[tile][r][channel][lane] = sum_i weight[i][channel] T[tile][index[i]][channel][lane]
+// out[tile][target[i]][channel][lane] += weight[i][channel] T[tile][index[i]][channel][lane], from 0 on
 void tiles_contract(struct tensor_data t, const struct contraction *c, uint32_t coefficients,
                     size_t tiles, float *out, int threads);
 // Periodic Daubechies-4 transform over the coefficients of each lane, in place; coefficients a power

@@ -115,24 +115,23 @@ enum {
     POWERS = BOUNCES,
 };
 
-static struct contraction empty_map(uint32_t coefficients, uint32_t reduced) {
-    float *weight = mem_array(3 * (size_t)coefficients, sizeof *weight);
+static struct contraction map_to(const uint32_t *target, uint32_t coefficients, uint32_t reduced,
+                                 struct arena *arena) {
+    double *weight = mem_array(3 * (size_t)coefficients, sizeof *weight);
     for (uint32_t i = 0; i < 3 * coefficients; i++)
-        weight[i] = 1 / (float)(i % SIDE + 1);
-    return (struct contraction){reduced, mem_array(reduced + 1, sizeof(uint32_t)),
-                                mem_array(coefficients, sizeof(uint32_t)), weight};
+        weight[i] = 1 / (double)(i % SIDE + 1);
+    const struct contraction c =
+        contraction_of(TENSOR_F32, coefficients, reduced, target, weight, arena);
+    mem_free(weight);
+    return c;
 }
 
 // The map that keeps axis `kept` of a matrix and sums the other up.
-static struct contraction switching(int kept) {
-    const struct contraction c = empty_map(SIDE * SIDE, SIDE);
-    uint32_t *start = (uint32_t *)(uintptr_t)c.start, *index = (uint32_t *)(uintptr_t)c.index;
-    for (uint32_t r = 0; r < SIDE; r++) {
-        start[r + 1] = (r + 1) * SIDE;
-        for (uint32_t k = 0; k < SIDE; k++)
-            index[r * SIDE + k] = kept == 0 ? r * SIDE + k : k * SIDE + r;
-    }
-    return c;
+static struct contraction switching(int kept, struct arena *arena) {
+    uint32_t target[SIDE * SIDE];
+    for (uint32_t i = 0; i < SIDE * SIDE; i++)
+        target[i] = kept == 0 ? i / SIDE : i % SIDE;
+    return map_to(target, SIDE * SIDE, SIDE, arena);
 }
 
 // Powers of the first object's albedo in all products of up to `left` more albedos, ascending from
@@ -146,19 +145,12 @@ static uint32_t list_powers(uint32_t least, uint32_t left, uint32_t power, uint3
 }
 
 // The map that keeps one object's curve and the powers of its albedo.
-static struct contraction freezing(uint32_t *coefficients) {
-    uint32_t powers[OBJECTS * OBJECTS * OBJECTS], at = 0;
-    const uint32_t groups = list_powers(0, BOUNCES - 1, 0, powers);
-    const struct contraction c = empty_map(groups * BINS, POWERS * BINS);
-    uint32_t *start = (uint32_t *)(uintptr_t)c.start, *index = (uint32_t *)(uintptr_t)c.index;
-    for (uint32_t r = 0; r < POWERS * BINS; r++) {
-        for (uint32_t g = 0; g < groups; g++)
-            if (powers[g] == r / BINS)
-                index[at++] = g * BINS + r % BINS;
-        start[r + 1] = at;
-    }
-    *coefficients = groups * BINS;
-    return c;
+static struct contraction freezing(uint32_t *coefficients, struct arena *arena) {
+    uint32_t powers[OBJECTS * OBJECTS * OBJECTS], target[OBJECTS * OBJECTS * OBJECTS * BINS];
+    *coefficients = list_powers(0, BOUNCES - 1, 0, powers) * BINS;
+    for (uint32_t i = 0; i < *coefficients; i++)
+        target[i] = powers[i / BINS] * BINS + i % BINS;
+    return map_to(target, *coefficients, POWERS * BINS, arena);
 }
 
 // Takes the values of a tensor as those of a smaller one with more coefficients.
@@ -194,17 +186,16 @@ static void time_contraction(const struct bench *b, const char *what, uint32_t c
         replay_destroy(r[k]);
     }
     mem_free(out);
-    mem_free((void *)(uintptr_t)c.start);
-    mem_free((void *)(uintptr_t)c.index);
-    mem_free((void *)(uintptr_t)c.weight);
 }
 
 static void time_contractions(const struct bench *b) {
+    struct arena arena = {0};
     uint32_t coefficients;
-    const struct contraction frozen = freezing(&coefficients);
-    time_contraction(b, "switching to the first curve", SIDE * SIDE, switching(0));
-    time_contraction(b, "switching to the second curve", SIDE * SIDE, switching(1));
+    const struct contraction frozen = freezing(&coefficients, &arena);
+    time_contraction(b, "switching to the first curve", SIDE * SIDE, switching(0, &arena));
+    time_contraction(b, "switching to the second curve", SIDE * SIDE, switching(1, &arena));
     time_contraction(b, "freezing all objects but one", coefficients, frozen);
+    arena_finish(&arena);
 }
 
 int main(int argc, char **argv) {

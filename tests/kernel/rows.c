@@ -39,12 +39,17 @@ static void product(struct fixture *f, struct replay *r, float *frame) {
 }
 
 static void contraction(struct fixture *f, struct replay *r, float *out) {
-    uint32_t start[REDUCED + 1], index[COEFFICIENTS];
-    for (uint32_t i = 0; i <= REDUCED; i++)
-        start[i] = i * COEFFICIENTS / REDUCED;
+    uint32_t target[COEFFICIENTS];
+    double weights[3 * COEFFICIENTS];
+    struct arena arena = {0};
     for (uint32_t i = 0; i < COEFFICIENTS; i++)
-        index[i] = (11 * i) % COEFFICIENTS;
-    CHECK(replay_contract(r, 0, &(struct contraction){REDUCED, start, index, f->weights}, out));
+        target[i] = (11 * i) % COEFFICIENTS * REDUCED / COEFFICIENTS;
+    for (uint32_t i = 0; i < 3 * COEFFICIENTS; i++)
+        weights[i] = (double)f->weights[i];
+    const struct contraction c =
+        contraction_of(TENSOR_ROWS, COEFFICIENTS, REDUCED, target, weights, &arena);
+    CHECK(replay_contract(r, 0, &c, out));
+    arena_finish(&arena);
 }
 
 static void twins_give_what_is_stored(struct fixture *f, const float *frame) {

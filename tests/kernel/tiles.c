@@ -200,28 +200,32 @@ static void layers(struct fixture *f) {
     mem_free(start), mem_free(twin), mem_free(zero), mem_free(cleared);
 }
 
-// Lists of different lengths, none and long ones among them, with coefficients in any order.
+// Runs of different lengths, none and long ones among them, with coefficients in any order.
 static void contract(struct fixture *f, enum tensor_storage s) {
-    enum { REDUCED = 21, MOST = 40, ALL = REDUCED * MOST };
+    enum { REDUCED = 4 * TILE_REDUCED + 5, RUNS = 5, MOST = 400, ALL = RUNS * MOST };
     const uint32_t coefficients = COEFFICIENTS * COLUMNS;
     const size_t n = (size_t)TILES * REDUCED * ROW;
     float *twin = mem_array(n, sizeof *twin), *zero = mem_array(n, sizeof *zero);
     double *truth = mem_array(n, sizeof *truth), *size = mem_array(n, sizeof *size);
     float *weight = random_floats(ALL * TILE_CHANNELS);
-    uint32_t start[REDUCED + 1] = {0}, index[ALL];
-    for (uint32_t r = 0; r < REDUCED; r++)
-        start[r + 1] = start[r] + (uint32_t)rand() % MOST * (r % 5 != 3);
-    for (uint32_t i = 0; i < start[REDUCED]; i++)
-        index[i] = (uint32_t)rand() % coefficients;
-    const struct contraction c = {REDUCED, start, index, weight};
+    uint32_t start[RUNS + 1] = {0}, index[ALL], target[ALL];
+    for (uint32_t r = 0; r < RUNS; r++) {
+        const uint32_t from = r * TILE_REDUCED;
+        start[r + 1] = start[r] + (uint32_t)rand() % MOST * (r != 3);
+        for (uint32_t i = start[r]; i < start[r + 1]; i++) {
+            index[i] = (uint32_t)rand() % coefficients;
+            target[i] = from + (uint32_t)rand() % (r + 1 < RUNS ? TILE_REDUCED : REDUCED - from);
+        }
+    }
+    const struct contraction c = {REDUCED, TILE_REDUCED, start, index, target, weight};
     tiles_contract(stored(f, s), &c, coefficients, TILES, twin, 2);
     for (size_t tile = 0; tile < TILES; tile++)
-        for (size_t r = 0; r < REDUCED; r++)
-            for (size_t i = start[r]; i < start[r + 1]; i++)
-                add_truth(f->t[s], tile * coefficients + index[i], weight + 3 * i,
-                          truth + (tile * REDUCED + r) * ROW, size + (tile * REDUCED + r) * ROW);
+        for (size_t i = 0; i < start[RUNS]; i++) {
+            const size_t at = (tile * REDUCED + target[i]) * ROW;
+            add_truth(f->t[s], tile * coefficients + index[i], weight + 3 * i, truth + at, size + at);
+        }
     for (size_t i = 0; i < n; i++)
-        size[i] += size[i] > 0 ? 0 : 1e-30; // an empty list gives exactly 0
+        size[i] += size[i] > 0 ? 0 : 1e-30; // nothing gives exactly 0
     CHECK(sum_error(twin, truth, size, n, MOST) <= 1);
     if (f->device) {
         char name[32];
@@ -229,17 +233,18 @@ static void contract(struct fixture *f, enum tensor_storage s) {
         struct compute_buffer t = to_device(f, f->stored[s], f->values * tensor_value_size(s));
         struct compute_buffer w = to_device(f, weight, ALL * TILE_CHANNELS * sizeof *weight);
         struct compute_buffer i = to_device(f, index, sizeof index);
+        struct compute_buffer to = to_device(f, target, sizeof target);
         struct compute_buffer b = to_device(f, start, sizeof start);
-        struct compute_arg args[] = {COMPUTE_BUFFER(&t), COMPUTE_BUFFER(&w), COMPUTE_BUFFER(&i),
-                                     COMPUTE_BUFFER(&b), COMPUTE_UINT(coefficients),
-                                     COMPUTE_UINT(REDUCED), COMPUTE_UINT(first),
-                                     COMPUTE_BUFFER(NULL)};
+        struct compute_arg args[] = {COMPUTE_BUFFER(&t), COMPUTE_BUFFER(&to), COMPUTE_BUFFER(&w),
+                                     COMPUTE_BUFFER(&i), COMPUTE_BUFFER(&b),
+                                     COMPUTE_UINT(coefficients), COMPUTE_UINT(REDUCED),
+                                     COMPUTE_UINT(first), COMPUTE_BUFFER(NULL)};
         snprintf(name, sizeof name, "contract_%s", suffix[s]);
-        kernel_agrees(f, "contract", name, args, 8,
-                      (TILES - first) * ((REDUCED + TILE_REDUCED - 1) / TILE_REDUCED), zero,
+        kernel_agrees(f, "contract", name, args, 9, (TILES - first) * RUNS, zero,
                       twin + first * REDUCED * ROW, (TILES - first) * (size_t)REDUCED * ROW);
         compute_buffer_destroy(&t);
         compute_buffer_destroy(&w);
+        compute_buffer_destroy(&to);
         compute_buffer_destroy(&i);
         compute_buffer_destroy(&b);
     }
