@@ -15,6 +15,7 @@
 #include "driver/ranks.h"
 
 enum { STRIPS_OF_UNIT = 8, DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
+enum { NEAR = 32 << 20 }; // bytes
 
 struct run {
     struct polynomial *p;
@@ -31,14 +32,18 @@ static int threads_of(const struct run *r) {
 
 // ---- memory -----------------------------------------------------------------------------------
 
-// Cuts tiles into strips until the sums of all threads fit. false after an error message.
+// Cuts tiles into strips until the sums of all threads fit, and those of one, which paths meet at
+// random, are near: of fresh pages each costs a fault. false after an error message.
 static bool fit_memory(struct run *r) {
     struct edit_sums_options *sums = &r->layout.sums;
     const double most = r->options->most_memory > 0 ? r->options->most_memory : (double)mem_of_machine() / 2;
-    for (sums->parts = 1; sums->parts <= EDIT_MOST_PARTS; sums->parts *= 2) {
-        r->report->sums_bytes = (uint64_t)threads_of(r) * edit_sums_worker_bytes(sums);
-        if ((double)r->report->sums_bytes <= most)
+    for (sums->parts = 1;; sums->parts *= 2) {
+        const size_t own = edit_sums_worker_bytes(sums);
+        r->report->sums_bytes = (uint64_t)threads_of(r) * own;
+        if ((own <= NEAR || sums->parts == EDIT_MOST_PARTS) && (double)r->report->sums_bytes <= most)
             return true;
+        if (sums->parts == EDIT_MOST_PARTS)
+            break;
     }
     log_error("the sums of %d strips of 4 rows at once take %.1f GB, more than the %.1f GB of "
               "--memory; take fewer --threads, bounces or bins", threads_of(r),
