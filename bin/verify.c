@@ -28,8 +28,8 @@ static const struct option_argument arguments[] = {
 
 static const struct option_spec options[] = {
     {.name = "pixels", .type = OPTION_INT, .offset = AT(pixels), .argument = "N", .min = 16,
-     .max = 1 << 28, .def = "1024", .help = "how many to trace, in random blocks of 4x4; the interval of few is too\n"
-             "narrow where errors lie in few places"},
+     .max = 1 << 28, .def = "1024", .help = "how many to trace, in random blocks of 4x4; fewer than 2048 are spread\n"
+             "over as many, with fewer samples each"},
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 1, .max = 1 << 30,
      .def = "256", .help = "samples per pixel of each of the two traces"},
     {.name = "all-bounces", .type = OPTION_FLAG, .offset = AT(all_bounces),
