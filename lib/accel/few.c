@@ -262,18 +262,20 @@ static void set_hit(const struct few_facet *f, wide_mask hit, const struct accel
 }
 
 static void name_hits(const struct few *f, const struct found *b, struct accel_hits *h) {
+    uint32_t shape[WIDE_LANES], primitive[WIDE_LANES]; // a vector would be written anew by each lane
     for (int i = 0; i < WIDE_LANES; i++) {
         const int32_t k = b->facet[i];
-        if (k < 0) {
-            h->shape[i] = h->primitive[i] = SCENE_NONE;
-        } else if ((uint32_t)k < f->facet_count) {
-            h->shape[i] = f->facets[k].shape;
-            h->primitive[i] = f->facets[k].primitive[b->second[i] & 1];
-        } else {
-            h->shape[i] = f->quadrics[(uint32_t)k - f->facet_count].placed.shape;
-            h->primitive[i] = 0;
+        shape[i] = SCENE_NONE;
+        primitive[i] = k < 0 ? SCENE_NONE : 0;
+        if (k >= 0 && (uint32_t)k < f->facet_count) {
+            shape[i] = f->facets[k].shape;
+            primitive[i] = f->facets[k].primitive[b->second[i] & 1];
+        } else if (k >= 0) {
+            shape[i] = f->quadrics[(uint32_t)k - f->facet_count].placed.shape;
         }
     }
+    memcpy(&h->shape, shape, sizeof shape);
+    memcpy(&h->primitive, primitive, sizeof primitive);
 }
 
 static void intersect_facets(const struct few *f, const struct few_box *box,

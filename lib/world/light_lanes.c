@@ -57,14 +57,13 @@ static uint32_t sample_alone(const struct world_light *l, uint32_t lanes, const 
 // Lights chosen by a table: light by light, with all lanes that chose it.
 static uint32_t sample_chosen(const struct world *w, uint32_t wanted, const struct wide3 *p,
                               wide u1, const wide u2[2], struct light_lanes *out) {
-    wide pmf = wide_of(1);
+    float pmfs[WIDE_LANES] = {0};
     uint32_t lit = 0;
     for (uint32_t left = wanted; left; left &= left - 1) {
         const int i = __builtin_ctz(left);
-        float one;
-        out->light[i] = light_choice_of_all(&w->choice, w->light_count, u1[i], &one);
-        pmf[i] = one;
+        out->light[i] = light_choice_of_all(&w->choice, w->light_count, u1[i], &pmfs[i]);
     }
+    const wide pmf = wide_load(pmfs);
     for (uint32_t left = wanted; left;) {
         const uint32_t light = out->light[__builtin_ctz(left)];
         uint32_t lanes = 0;
