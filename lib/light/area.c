@@ -102,7 +102,7 @@ static bool has_wide(const void *data) {
 static wide_mask sample_wide(const void *data, const struct wide3 *p, const wide u[2],
                              struct light_samples *s) {
     const struct area *a = data;
-    s->emission = a->radiance.value;
+    s->emission = wide3_of(a->radiance.value);
     return a->is_mesh ? area_rectangle_sample_wide(&a->mesh, p, u, s)
                       : area_sphere_sample_wide(&a->quadric, p, u, s);
 }

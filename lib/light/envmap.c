@@ -3,6 +3,7 @@
 #include "image/image.h"
 #include "light/light.h"
 #include "light/sphere_table.h"
+#include "math/wide_maps.h"
 
 struct envmap {
     const char *filename;
@@ -80,6 +81,22 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
     return true;
 }
 
+static wide_mask sample_wide(const void *data, const struct wide3 *p, const wide u[2],
+                             struct light_samples *s) {
+    const struct envmap *e = data;
+    const struct wide_frame world = {wide3_of(e->world.x), wide3_of(e->world.y),
+                                     wide3_of(e->world.z)};
+    struct wide3 w, value;
+    (void)p;
+    *s = (struct light_samples){.distance = wide_of(INFINITY)};
+    const wide_mask lit = sphere_table_sample_wide(&e->table, u, &w, &s->pdf_sa, &value);
+    if (e->table.black)
+        return lit;
+    s->wi = wide_normalize(wide_to_world(&world, w));
+    s->emission = wide3_scale(wide_of(e->scale), value);
+    return lit;
+}
+
 static spectrum emission(const void *data, const struct light_hit *hit) {
     const struct envmap *e = data;
     return e->scale * sphere_table_eval(&e->table, affine_vector(&e->local, hit->wi));
@@ -108,6 +125,7 @@ const struct light_type light_envmap = {
     .entry = {.name = "envmap", .help = "environment from a latitude-longitude picture",
               .params = params, .size = sizeof(struct envmap)},
     .infinite = true,
-    .prepare = prepare, .sample = sample, .emission = emission, .pdf_sa = pdf_sa, .power = power,
+    .prepare = prepare, .sample = sample, .sample_wide = sample_wide, .emission = emission,
+    .pdf_sa = pdf_sa, .power = power,
     .detail = detail, .finish = finish,
 };

@@ -27,11 +27,10 @@ struct light_sample {
     vec3 n;            // normal there, for offsetting; zero: do not offset
 };
 
-// Samples of sixteen lit points. A radiance that is the same everywhere is that of all lanes.
+// Samples of sixteen lit points.
 struct light_samples {
-    struct wide3 wi, p, p_error, n;
+    struct wide3 wi, p, p_error, n, emission;
     wide distance, pdf_sa;
-    spectrum emission;
 };
 
 // A point of a light that was found by a ray. Infinite lights use wi only.

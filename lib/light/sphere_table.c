@@ -30,17 +30,6 @@ static void grid_cdf(const double *weights, int count, float *cdf) {
     }
 }
 
-// The i with cdf[i] <= u < cdf[i + 1]. Steps by arithmetic: which way they go cannot be predicted.
-static int grid_search(const float *cdf, int count, float u) {
-    int lo = 0;
-    for (int length = count; length > 1;) {
-        const int half = length / 2;
-        lo += half & -(cdf[lo + half] <= u);
-        length -= half;
-    }
-    return lo;
-}
-
 static const float *texel(const struct sphere_table *t, int x, int y) {
     return t->texels[(size_t)y * ((size_t)t->width + 1) + (size_t)x];
 }
@@ -69,7 +58,7 @@ static void copy_texels(struct sphere_table *t, const float *rgb, int width, int
     float largest = 0;
     t->width = width;
     t->height = height < 2 ? 2 : height;
-    t->texels = mem_array((size_t)t->height * ((size_t)width + 1), sizeof *t->texels);
+    t->texels = mem_array((size_t)t->height * ((size_t)width + 1) + 1, sizeof *t->texels);
     for (int y = 0; y < t->height; y++) {
         const float *from = rgb + (size_t)(y < height ? y : height - 1) * (size_t)width * 3;
         float(*to)[3] = t->texels + (size_t)y * ((size_t)width + 1);
@@ -99,8 +88,8 @@ void sphere_table_init(struct sphere_table *t, const float *rgb, int width, int 
     copy_texels(t, rgb, width, height);
     const double hat = init_rows(t);
     const int patch_rows = t->height - 1;
-    t->rows = mem_array((size_t)patch_rows + 1, sizeof *t->rows);
-    t->columns = mem_array((size_t)patch_rows * ((size_t)width + 1), sizeof *t->columns);
+    cdf_nodes_init(&t->rows, 1, patch_rows);
+    cdf_nodes_init(&t->columns, (size_t)patch_rows, width);
     double *row = mem_array((size_t)width, sizeof *row);
     double *sums = mem_array((size_t)patch_rows, sizeof *sums);
     for (int y = 0; y < patch_rows; y++) {
@@ -108,10 +97,12 @@ void sphere_table_init(struct sphere_table *t, const float *rgb, int width, int 
             row[x] = (double)patch_weights(t, x, y).mean;
             sums[y] += row[x];
         }
-        grid_cdf(row, width, t->columns + (size_t)y * ((size_t)width + 1));
+        grid_cdf(row, width, cdf_nodes_row(&t->columns, (size_t)y));
+        cdf_nodes_index(&t->columns, (size_t)y);
         t->mean += sums[y];
     }
-    grid_cdf(sums, patch_rows, t->rows);
+    grid_cdf(sums, patch_rows, cdf_nodes_row(&t->rows, 0));
+    cdf_nodes_index(&t->rows, 0);
     t->mean *= hat / (2.0 * width) / (double)t->unit;
     mem_free(row);
     mem_free(sums);
@@ -120,8 +111,8 @@ void sphere_table_init(struct sphere_table *t, const float *rgb, int width, int 
 void sphere_table_finish(struct sphere_table *t) {
     mem_free(t->texels);
     mem_free(t->row_weight);
-    mem_free(t->rows);
-    mem_free(t->columns);
+    cdf_nodes_finish(&t->rows);
+    cdf_nodes_finish(&t->columns);
     *t = (struct sphere_table){0};
 }
 
@@ -161,8 +152,9 @@ spectrum sphere_table_eval(const struct sphere_table *t, vec3 w) {
 
 // pmf of the patch, times its inner density, times d(u,v) / d(solid angle).
 static float density(const struct sphere_table *t, const struct place *p, const struct patch *c) {
-    const float *row = t->columns + (size_t)p->y * ((size_t)t->width + 1);
-    const float pmf = (t->rows[p->y + 1] - t->rows[p->y]) * (row[p->x + 1] - row[p->x]);
+    const float *rows = cdf_nodes_row(&t->rows, 0);
+    const float *row = cdf_nodes_row(&t->columns, (size_t)p->y);
+    const float pmf = (rows[p->y + 1] - rows[p->y]) * (row[p->x + 1] - row[p->x]);
     const float top = lerpf(p->fx, c->w[0], c->w[1]), bottom = lerpf(p->fx, c->w[2], c->w[3]);
     if (!(c->mean > 0))
         return 0;
@@ -199,12 +191,12 @@ bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, f
         return false;
     struct place p;
     const uint64_t bits = hash_u64((uint64_t)(u.x * 0x1p24f) << 32 | (uint64_t)(u.y * 0x1p24f));
-    p.y = grid_search(t->rows, t->height - 1, u.y);
-    const float *row = t->columns + (size_t)p.y * ((size_t)t->width + 1);
-    p.x = grid_search(row, t->width, u.x);
+    p.y = (int)cdf_nodes_find(&t->rows, 0, u.y);
+    p.x = (int)cdf_nodes_find(&t->columns, (size_t)p.y, u.x);
+    const float *row = cdf_nodes_row(&t->columns, (size_t)p.y);
     const struct patch c = patch_weights(t, p.x, p.y);
     const float ux = inside(row, p.x, u.x, uniform_float((uint32_t)bits));
-    const float uy = inside(t->rows, p.y, u.y, uniform_float((uint32_t)(bits >> 32)));
+    const float uy = inside(cdf_nodes_row(&t->rows, 0), p.y, u.y, uniform_float((uint32_t)(bits >> 32)));
     p.fy = sample_linear(uy, c.w[0] + c.w[1], c.w[2] + c.w[3]);
     p.fx = sample_linear(ux, lerpf(p.fy, c.w[0], c.w[2]), lerpf(p.fy, c.w[1], c.w[3]));
     const float around = ((float)p.x + p.fx + 0.5f) / (float)t->width;

@@ -10,15 +10,16 @@
 // third of the next row's sine, so that no light is out of reach.
 #pragma once
 
-#include "math/vec.h"
+#include "math/cdf_nodes.h"
+#include "math/wide.h"
 
 struct sphere_table {
     int width, height;   // height >= 2
-    float (*texels)[3];  // (width + 1) x height, last column as the first; owned
+    float (*texels)[3];  // (width + 1) x height and one more, last column as the first; owned
     float *row_weight;   // height; owned
     float unit;          // 1 / largest luminance: keeps products in range
-    float *rows;         // cdf of the height - 1 rows of patches; owned
-    float *columns;      // cdf of the patches of each row, width + 1 values each; owned
+    struct cdf_nodes rows;    // of the height - 1 rows of patches
+    struct cdf_nodes columns; // of the patches of each row
     double mean;         // luminance over the sphere
     bool black;
 };
@@ -32,3 +33,6 @@ float sphere_table_pdf_sa(const struct sphere_table *t, vec3 w);
 // false: the picture is black
 bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, float *pdf_sa,
                          spectrum *value);
+// sphere_table_sample for sixteen pairs of numbers, with the same results.
+wide_mask sphere_table_sample_wide(const struct sphere_table *t, const wide u[2], struct wide3 *w,
+                                   wide *pdf_sa, struct wide3 *value);

@@ -97,7 +97,7 @@ wide_mask sunsky_aim_wide(const void *data, const struct wide3 *p, const wide u[
     const struct wide_frame world = {wide3_of(s->world.x), wide3_of(s->world.y),
                                      wide3_of(s->world.z)};
     *out = (struct light_samples){.wi = wide_to_world(&world, w), .p = none, .p_error = none,
-                                  .n = none, .distance = wide_of(INFINITY),
+                                  .n = none, .emission = none, .distance = wide_of(INFINITY),
                                   .pdf_sa = mixture_pdf(s, w, density)};
     return above & (out->pdf_sa > 0);
 }

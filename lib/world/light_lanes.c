@@ -26,15 +26,21 @@ static bool is_wide(const struct world_light *l) {
     return l->type->sample_wide && (!l->type->has_wide || l->type->has_wide(l->data));
 }
 
+// Lanes that do not sample this light read no memory of their own.
+static wide of_lanes(uint32_t lanes, wide u) {
+    return wide_select(wide_mask_of(lanes), u, wide_of(u[__builtin_ctz(lanes)]));
+}
+
 // One light for many lanes.
 static uint32_t sample_together(const struct world_light *l, uint32_t lanes, const struct wide3 *p,
                                 const wide u[2], wide pmf, struct light_lanes *out) {
     struct light_samples s;
-    const uint32_t lit = lanes & wide_bits(l->type->sample_wide(l->data, p, u, &s));
+    const wide theirs[2] = {of_lanes(lanes, u[0]), of_lanes(lanes, u[1])};
+    const uint32_t lit = lanes & wide_bits(l->type->sample_wide(l->data, p, theirs, &s));
     s.pdf_sa *= pmf;
     merge(wide_mask_of(lit), &s, &out->s);
     for (uint32_t left = lit; left; left &= left - 1)
-        out->emission[__builtin_ctz(left)] = s.emission;
+        out->emission[__builtin_ctz(left)] = wide3_lane(&s.emission, __builtin_ctz(left));
     out->late |= l->type->aim ? lit : 0;
     return lit;
 }

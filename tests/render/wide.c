@@ -2,6 +2,7 @@
 // Vertices that are shaded sixteen at a time have the bits of those shaded one by one, for every
 // sampler; and pictures of scenes whose packets mix pixels do not depend on the crop. Materials by
 // themselves: property/bsdf_wide.c.
+#include "math/hash.h"
 #include "render/picture.h"
 
 static const char scene[] =
@@ -57,7 +58,29 @@ static const char sky[] =
     "<emitter type='sunsky'><vector name='sun_direction' x='0.3' y='0.2' z='0.8'/>"
     "<float name='sun_aperture' value='20'/></emitter>";
 
+// Beside other lights, so that lanes of a packet choose different ones.
+static const char picture_of_sky[] =
+    "<emitter type='envmap'><string name='filename' value='sky.exr'/>"
+    "<transform name='to_world'><rotate x='1' y='2' angle='50'/></transform></emitter>";
+static const char picture_and_point[] =
+    "<emitter type='envmap'><string name='filename' value='sky.exr'/></emitter>"
+    "<emitter type='point'><point name='position' x='-2' y='3' z='2'/>"
+    "<rgb name='intensity' value='3,2,1'/></emitter>";
+
 enum { LANES = 128, SAMPLES = 64 };
+
+// Wider than one node of its sums, with black texels and a bright one.
+static void write_sky(void) {
+    enum { WIDTH = 300, HEIGHT = 20 };
+    struct rng rng = {5};
+    struct image im;
+    image_init(&im, WIDTH, HEIGHT, 3);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++)
+        im.pixels[i] = i / 3 % 7 ? rng_float(&rng) : 0;
+    im.pixels[3 * (6 * WIDTH + 40)] = 500;
+    CHECK(image_write_exr(scene_path("sky.exr"), &im, NULL));
+    image_finish(&im);
+}
 
 // Adds up what arrives, lane by lane.
 struct sum_sink {
@@ -155,6 +178,7 @@ static void crops_give_the_same_bits(void) {
 
 int main(void) {
     scene_folder_open();
+    write_sky();
     for (int i = 0; samplers.entries[i]; i++) {
         together_is_as_one_by_one("", samplers.entries[i]->name, "");
         together_is_as_one_by_one("", samplers.entries[i]->name, more_lights);
@@ -164,6 +188,8 @@ int main(void) {
                               "<boolean name='strict_normals' value='true'/>", "sobol", more_lights);
     together_is_as_one_by_one("<string name='light_choice' value='tree'/>", "sobol", more_lights);
     together_is_as_one_by_one("", "sobol", many_lights);
+    together_is_as_one_by_one("", "sobol", picture_of_sky);
+    together_is_as_one_by_one("", "sobol", picture_and_point);
     together_is_as_one_by_one("<integer name='max_depth' value='3'/>"
                               "<integer name='rr_depth' value='1'/>", "independent", "");
     crops_give_the_same_bits();
