@@ -14,7 +14,7 @@
 #include "driver/polynomial_resume.h"
 #include "driver/ranks.h"
 
-enum { STRIPS_OF_UNIT = 8, DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
+enum { DRY_TILES = 4, DRY_SAMPLES = 16, BLOCK = 64 };
 enum { NEAR = 32 << 20 }; // bytes
 
 struct run {
@@ -105,13 +105,12 @@ static void take(void *user, const struct ranks_unit *u, uint32_t part, const do
     edit_sums_take(t->sums, u->tile + part, values, count);
 }
 
-static void finish(void *user, const struct ranks_unit *u, bool whole) {
-    struct tracing *t = user;
+// How much is done once `strips` of these are.
+static void report_share(void *user, uint32_t strips) {
+    const struct tracing *t = user;
     const struct run *r = t->run;
-    t->closed = t->closed || !whole;
-    t->done += whole ? u->tiles : 0;
     const struct job_options *o = &r->options->job;
-    const double done = (double)t->done / t->strips;
+    const double done = (double)strips / t->strips;
     double share = (t->first - r->first + t->samples * done) / (r->end - r->first);
     if (o->seconds > 0)
         share = fmax(share, (time_seconds() - r->start) / o->seconds);
@@ -121,15 +120,27 @@ static void finish(void *user, const struct ranks_unit *u, bool whole) {
         r->options->progress(r->options->user, fmin(share, 1));
 }
 
+static void finish(void *user, const struct ranks_unit *u, bool whole) {
+    struct tracing *t = user;
+    t->closed = t->closed || !whole;
+    t->done += whole ? u->tiles : 0;
+    report_share(t, t->done);
+}
+
 static bool trace(struct run *r, uint32_t strip, uint32_t strips, uint32_t first, uint32_t samples) {
     struct tracing t = {.run = r, .strip = strip, .strips = strips, .first = first,
                         .samples = samples,
-                        .of_unit = ranks_count() > 1 ? (uint32_t)threads_of(r) : STRIPS_OF_UNIT};
+                        .of_unit = ranks_count() > 1 ? (uint32_t)threads_of(r) : strips};
+    struct tracer_options o = r->p->tracer;
     if (ranks_index() > 0 && !r->options->dry_run)
         t.handed = mem_array(strip_count(r), sizeof *t.handed);
     r->layout.sums.handed = t.handed;
     t.sums = edit_sums_create(&r->layout.sums);
-    t.tracer = tracer_create(&r->p->tracer, edit_sums_sink, t.sums);
+    if (ranks_count() == 1) { // one unit: threads that wait for each other at its end wait once
+        o.closed = report_share;
+        o.closed_user = &t;
+    }
+    t.tracer = tracer_create(&o, edit_sums_sink, t.sums);
     const struct ranks_work w = {t.of_unit, next, work, take, finish, &t};
     (r->options->dry_run ? ranks_work_alone : ranks_share)(&w);
     const struct tracer_counts n = tracer_count(t.tracer);

@@ -13,7 +13,7 @@
 #include "sink/lighting.h"
 #include "sink/tensor_sums.h"
 
-enum { HALVES = 2, TILES_BETWEEN_REPORTS = 8, DRY_TILES = 4 };
+enum { HALVES = 2, DRY_TILES = 4 };
 
 struct basis {
     struct source_basis source;
@@ -215,20 +215,28 @@ static int threads_of(const struct plan *p) {
     return p->options->job.threads > 0 ? p->options->job.threads : thread_default_count();
 }
 
+struct tracing {
+    const struct plan *plan;
+    uint32_t tiles;
+};
+
+static void report_share(void *user, uint32_t tiles) {
+    const struct tracing *t = user;
+    const struct relight_options *o = t->plan->options;
+    if (o->progress)
+        o->progress(o->user, (double)tiles / t->tiles);
+}
+
 // Traces tiles [first, first + count) of the plan.
 static bool trace(struct plan *p, struct tensor_sums *sums, uint32_t first, uint32_t count,
                   struct relight_report *report) {
     struct tracer_options o = p->job->render.tracer;
     o.spp = p->samples;
     o.replicates = HALVES;
+    o.closed = report_share;
+    o.closed_user = &(struct tracing){p, count};
     struct tracer *tracer = tracer_create(&o, tensor_sums_sink, sums);
-    bool whole = true;
-    for (uint32_t done = 0; done < count && whole; done += TILES_BETWEEN_REPORTS) {
-        const uint32_t n = count - done < TILES_BETWEEN_REPORTS ? count - done : TILES_BETWEEN_REPORTS;
-        whole = tracer_run(tracer, first + done, n, 0, p->samples) && !(o.stop && *o.stop);
-        if (p->options->progress)
-            p->options->progress(p->options->user, (double)(done + n) / count);
-    }
+    const bool whole = tracer_run(tracer, first, count, 0, p->samples) && !(o.stop && *o.stop);
     const struct tracer_counts n = tracer_count(tracer);
     report->paths = n.paths;
     report->rays = n.rays + n.shadow_rays;

@@ -23,6 +23,7 @@ struct tracer {
     uint32_t first_tile;
     uint32_t first, count;    // samples of the run
     atomic_bool abandoned;
+    atomic_uint closed;       // tiles of the run
     _Atomic double stop_time; // when the stop was first seen; 0: not yet
 };
 
@@ -157,6 +158,9 @@ static void trace_tile(void *ctx, size_t tile, int index) {
     }
     trace_batch(t, w, &batch);
     sink->type->close(sink);
+    const uint32_t closed = atomic_fetch_add(&t->closed, 1) + 1;
+    if (index == 0 && t->options.closed)
+        t->options.closed(t->options.closed_user, closed);
 }
 
 struct tracer *tracer_create(const struct tracer_options *options,
@@ -184,6 +188,7 @@ bool tracer_run(struct tracer *t, uint32_t tile, uint32_t tiles, uint32_t first,
     t->first_tile = tile;
     t->first = first;
     t->count = count;
+    atomic_store(&t->closed, 0);
     thread_for(t->threads, tiles, trace_tile, t);
     return !atomic_load(&t->abandoned);
 }

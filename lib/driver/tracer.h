@@ -23,6 +23,9 @@ struct tracer_options {
     const struct sample_map *map; // NULL: every pixel takes every sample
     int threads;         // 0: default
     const volatile sig_atomic_t *stop; // becomes non-zero: finish within two seconds; or NULL
+    // NULL, or told between tiles how many of a run are closed, on the thread that has called it.
+    void (*closed)(void *user, uint32_t tiles);
+    void *closed_user;
 };
 
 struct tracer_counts {
