@@ -29,14 +29,19 @@ static void find_patches(const struct sphere_table *t, const wide u[2], struct p
             __builtin_prefetch(texel(t, p->x[i], p->y[i] + k));
             __builtin_prefetch(texel(t, p->x[i] + 1, p->y[i] + k) + 2);
         }
+    float edge[4][WIDE_LANES]; // a vector whose lanes are set one by one waits for each
     for (int i = 0; i < WIDE_LANES; i++) {
         const float *rows = cdf_nodes_row(&t->rows, 0) + p->y[i];
         const float *columns = cdf_nodes_row(&t->columns, p->y[i]) + p->x[i];
-        p->top[i] = rows[0];
-        p->bottom[i] = rows[1];
-        p->left[i] = columns[0];
-        p->right[i] = columns[1];
+        edge[0][i] = rows[0];
+        edge[1][i] = rows[1];
+        edge[2][i] = columns[0];
+        edge[3][i] = columns[1];
     }
+    p->top = wide_load(edge[0]);
+    p->bottom = wide_load(edge[1]);
+    p->left = wide_load(edge[2]);
+    p->right = wide_load(edge[3]);
 }
 
 static void weigh_corners(const struct sphere_table *t, struct patches *p) {
