@@ -92,12 +92,21 @@ static void scatter(const struct path *p, struct lane *l, const struct surface *
         survive_roulette(p, l);
 }
 
-// Next event estimation: leaves a shadow test pending.
-static void sample_light(const struct path *p, struct trace_context *ctx, struct lane *l,
-                         const struct surface *s, const struct closure *closure, vec3 side) {
+static void sample_one_light(struct trace_context *ctx, struct lane *l, const struct surface *s,
+                             const struct closure *closure, vec3 side) {
     const float choice = ctx->world->choice.draws ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
     const struct vec2 point = sampler_2d(draw(l, DRAW_LIGHT_POINT));
     vertex_sample_light(ctx, s, closure, side, choice, point, 1, &l->shadow);
+}
+
+// Next event estimation: leaves a shadow test pending. ahead: the sample, NULL where it is not known.
+static void sample_light(const struct path *p, struct trace_context *ctx, struct lane *l,
+                         const struct surface *s, const struct closure *closure, vec3 side,
+                         const struct light_ahead *ahead) {
+    if (!ahead)
+        sample_one_light(ctx, l, s, closure, side);
+    else if (ahead->lit)
+        vertex_test_light(ctx, s, closure, 0, &ahead->s, 1, &l->shadow);
     struct contribution *c = &l->shadow.contribution;
     if (!l->shadow.pending)
         return;
@@ -112,7 +121,7 @@ static void sample_light(const struct path *p, struct trace_context *ctx, struct
 
 // One vertex: emission found, light sampled, direction chosen.
 static void shade_surface(const struct path *p, struct trace_context *ctx, struct lane *l,
-                          const struct surface *s) {
+                          const struct surface *s, const struct light_ahead *ahead) {
     struct bsdf_sample b = {.lobe = 0};
     if (l->from.depth > 0 || !p->hide_emitters)
         vertex_add_emission(ctx, l->sample, s, l->ray.d, l->beta, &l->from);
@@ -122,7 +131,7 @@ static void shade_surface(const struct path *p, struct trace_context *ctx, struc
                          (!p->strict_normals || same_side(s, -l->ray.d, wo));
     const vec3 side = goes_on ? vertex_light_side(s, closure, wo) : v3(0, 0, 0);
     if (goes_on && closure->lobes & LOBE_SMOOTH)
-        sample_light(p, ctx, l, s, closure, side);
+        sample_light(p, ctx, l, s, closure, side, ahead);
     l->alive = false;
     if (goes_on) {
         const float lobe = sampler_1d(draw(l, DRAW_LOBE));
@@ -140,11 +149,17 @@ static void shade_surface(const struct path *p, struct trace_context *ctx, struc
     }
 }
 
-static void shade(const struct path *p, struct trace_context *ctx, struct lane *l,
-                  const struct accel_hit *hit) {
-    struct surface s;
-    world_surface(ctx->world, &l->ray, hit, &s);
-    shade_surface(p, ctx, l, &s);
+// The lanes of a packet one by one. hits: by lane.
+static void shade_alone(const struct path *p, struct trace_context *ctx, struct lane *lanes,
+                        const struct packet *packet, const struct accel_hit *hits) {
+    struct light_ahead ahead[WIDE_LANES];
+    const uint32_t known = path_sample_ahead(p, ctx->world, lanes, packet, hits, ahead);
+    for (int i = 0; i < packet->count; i++) {
+        struct lane *l = &lanes[packet->lanes[i]];
+        struct surface s;
+        world_surface(ctx->world, &l->ray, &hits[packet->lanes[i]], &s);
+        shade_surface(p, ctx, l, &s, known >> i & 1 ? &ahead[i] : NULL);
+    }
 }
 
 static void start(struct trace_context *ctx, struct lane *l, const struct path_start *from,
@@ -311,9 +326,11 @@ static void shade_all(const struct path *p, struct trace_context *ctx, struct wa
     for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
         shade_kind(p, ctx, w, hits, kind, &kinds);
     shade_kind(p, ctx, w, hits, KIND_OWN, &kinds);
-    for (uint32_t k = 0; k < kinds.count[KIND_ALONE]; k++) {
-        const uint16_t i = kinds.lanes[KIND_ALONE][k];
-        shade(p, ctx, &w->lanes[i], &hits[i]);
+    for (uint32_t k = 0; k < kinds.count[KIND_ALONE]; k += WIDE_LANES) {
+        const uint32_t left = kinds.count[KIND_ALONE] - k;
+        const struct packet some = {&kinds.lanes[KIND_ALONE][k],
+                                    left < WIDE_LANES ? (int)left : WIDE_LANES};
+        shade_alone(p, ctx, w->lanes, &some, hits);
     }
 }
 
@@ -389,7 +406,7 @@ static void begin_at_surfaces(const struct path *p, struct trace_context *ctx, s
     for (uint32_t k = 0; k < w->count; k++) {
         struct lane *l = &w->lanes[w->alive[k]];
         l->shadow.pending = false;
-        shade_surface(p, ctx, l, starts[l->sample].surface);
+        shade_surface(p, ctx, l, starts[l->sample].surface, NULL);
     }
     settle(ctx, w, true);
 }

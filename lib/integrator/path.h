@@ -67,6 +67,18 @@ static inline uint32_t path_wide_kind(const struct trace_context *ctx, const str
     return way == RESPONSE_WORLD ? kind : way == RESPONSE_OWN ? KIND_OWN : KIND_ALONE;
 }
 
+// A light sample that was taken before its place was known.
+struct light_ahead {
+    bool lit;
+    struct light_sample s;
+};
+
+// Light samples of lanes that are shaded one by one, side by side where they do not depend on the
+// place: those of world_sample_light. The lanes of the packet that have one, a bit each.
+uint32_t path_sample_ahead(const struct path *p, const struct world *w, const struct lane *lanes,
+                           const struct packet *packet, const struct accel_hit *hits,
+                           struct light_ahead out[WIDE_LANES]);
+
 // One vertex of a packet's lanes, whose materials are of this kind: the same as one by one, with the
 // same bits. hits: by lane.
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,

@@ -45,22 +45,28 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
                          const struct closure *closure, vec3 side, float u1, struct vec2 u2,
                          float rivals, struct shadow_test *test) {
     const struct light_place place = {s->p, side};
-    test->pending = false;
-    test->most_passes = -1;
-    float pdf_bsdf;
-    uint32_t index;
+    uint32_t light;
     struct light_sample l;
-    if (!world_sample_light(ctx->world, &place, u1, u2, &index, &l) ||
-        !world_links(ctx->world, index, s->shape))
+    test->pending = false;
+    if (world_sample_light(ctx->world, &place, u1, u2, &light, &l))
+        vertex_test_light(ctx, s, closure, light, &l, rivals, test);
+}
+
+void vertex_test_light(struct trace_context *ctx, const struct surface *s,
+                       const struct closure *closure, uint32_t light, const struct light_sample *l,
+                       float rivals, struct shadow_test *test) {
+    float pdf_bsdf;
+    if (!world_links(ctx->world, light, s->shape))
         return;
-    const spectrum f = closure_eval(closure, to_local(&s->point.frame, l.wi), &pdf_bsdf);
-    if (spectrum_is_black(f) || (!l.late && spectrum_is_black(l.emission)))
+    const spectrum f = closure_eval(closure, to_local(&s->point.frame, l->wi), &pdf_bsdf);
+    if (spectrum_is_black(f) || (!l->late && spectrum_is_black(l->emission)))
         return;
-    const float share = l.delta ? 1 : mis_weight(l.pdf_sa, rivals * pdf_bsdf);
-    test->contribution = (struct contribution){.weight = f * (share / l.pdf_sa), .emission = l.emission,
-                                               .source = index, .sampled = true, .wi = l.wi};
-    test->ray = world_shadow_ray(s, &l);
-    test->late = l.late;
+    const float share = l->delta ? 1 : mis_weight(l->pdf_sa, rivals * pdf_bsdf);
+    test->contribution = (struct contribution){.weight = f * (share / l->pdf_sa), .emission = l->emission,
+                                               .source = light, .sampled = true, .wi = l->wi};
+    test->ray = world_shadow_ray(s, l);
+    test->most_passes = -1;
+    test->late = l->late;
     test->pending = true;
 }
 

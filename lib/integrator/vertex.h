@@ -62,6 +62,11 @@ void vertex_sample_light(struct trace_context *ctx, const struct surface *s,
                          const struct closure *closure, vec3 side, float u1, struct vec2 u2,
                          float rivals, struct shadow_test *test);
 
+// Its second step, for a sample of a light that is given; the test is not pending.
+void vertex_test_light(struct trace_context *ctx, const struct surface *s,
+                       const struct closure *closure, uint32_t light, const struct light_sample *l,
+                       float rivals, struct shadow_test *test);
+
 // Hands out the light of a test whose ray has met nothing.
 void vertex_add_light(struct trace_context *ctx, int lane, struct shadow_test *test);
 // Runs the shadow ray of a pending test and hands out what comes through.

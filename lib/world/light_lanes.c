@@ -117,6 +117,19 @@ uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struc
                              : sample_chosen(w, wanted, p, u1, u2, out);
 }
 
+bool world_lights_are_far(const struct world *w) {
+    return w->light_count == 1 && w->lights[0].type->infinite && !w->choice.by_part &&
+           is_wide(&w->lights[0]);
+}
+
+struct light_sample light_lanes_at(const struct light_lanes *l, int i) {
+    return (struct light_sample){
+        .wi = wide3_lane(&l->s.wi, i), .distance = l->s.distance[i], .pdf_sa = l->s.pdf_sa[i],
+        .emission = l->emission[i], .delta = l->delta >> i & 1, .late = l->late >> i & 1,
+        .p = wide3_lane(&l->s.p, i), .p_error = wide3_lane(&l->s.p_error, i),
+        .n = wide3_lane(&l->s.n, i)};
+}
+
 void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,
                        struct wide3 *d, wide *tmax) {
     *o = surfaces_offset(s, l->wi);

@@ -16,6 +16,11 @@ uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struc
                              const struct wide3 *side, wide u1, const wide u2[2],
                              struct light_lanes *out);
 
+// Whether the samples do not depend on the place: there is one light, infinitely far away.
+bool world_lights_are_far(const struct world *w);
+// The sample of one lane.
+struct light_sample light_lanes_at(const struct light_lanes *l, int i);
+
 // Shadow rays from surfaces to those samples; t from 0 to *tmax.
 void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,
                        struct wide3 *d, wide *tmax);

@@ -29,6 +29,7 @@ struct world_shape {
     uint8_t wide_kind;          // index of world.wide_kinds; 0: its points are shaded one by one
     bool flip_normals : 1, hidden : 1; // from the rays of the sensor
     bool two_sided : 1, textured : 1; // of the wide material
+    bool smooth : 1;            // its material may scatter light that was sampled
     const void *wide_data;
 };
 
