@@ -31,6 +31,14 @@ static wide of_lanes(uint32_t lanes, wide u) {
     return wide_select(wide_mask_of(lanes), u, wide_of(u[__builtin_ctz(lanes)]));
 }
 
+static void scatter_emission(uint32_t lit, const struct wide3 *emission, struct light_lanes *out) {
+    const wide rows[4] = {emission->x, emission->y, emission->z, (wide){0}};
+    float spare[4], *to[WIDE_LANES];
+    for (int i = 0; i < WIDE_LANES; i++)
+        to[i] = lit >> i & 1 ? (float *)(void *)&out->emission[i] : spare;
+    wide_scatter4(rows, to);
+}
+
 // One light for many lanes.
 static uint32_t sample_together(const struct world_light *l, uint32_t lanes, const struct wide3 *p,
                                 const wide u[2], wide pmf, struct light_lanes *out) {
@@ -39,8 +47,7 @@ static uint32_t sample_together(const struct world_light *l, uint32_t lanes, con
     const uint32_t lit = lanes & wide_bits(l->type->sample_wide(l->data, p, theirs, &s));
     s.pdf_sa *= pmf;
     merge(wide_mask_of(lit), &s, &out->s);
-    for (uint32_t left = lit; left; left &= left - 1)
-        out->emission[__builtin_ctz(left)] = wide3_lane(&s.emission, __builtin_ctz(left));
+    scatter_emission(lit, &s.emission, out);
     out->late |= l->type->aim ? lit : 0;
     return lit;
 }
@@ -58,6 +65,15 @@ static uint32_t sample_alone(const struct world_light *l, uint32_t lanes, const 
         lit |= 1u << i;
     }
     return lit;
+}
+
+// The only light.
+static uint32_t sample_only(const struct world *w, uint32_t wanted, const struct wide3 *p,
+                            const wide u2[2], struct light_lanes *out) {
+    const struct world_light *l = &w->lights[0];
+    memset(out->light, 0, sizeof out->light);
+    return is_wide(l) ? sample_together(l, wanted, p, u2, wide_of(1), out)
+                      : sample_alone(l, wanted, p, u2, wide_of(1), out);
 }
 
 // Lights chosen by a table: light by light, with all lanes that chose it.
@@ -113,8 +129,10 @@ uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struc
     out->delta = out->late = 0;
     if (w->light_count == 0)
         return 0;
-    return w->choice.by_part ? sample_parts(w, wanted, p, side, u1, u2, out)
-                             : sample_chosen(w, wanted, p, u1, u2, out);
+    if (w->choice.by_part)
+        return sample_parts(w, wanted, p, side, u1, u2, out);
+    return w->light_count == 1 ? sample_only(w, wanted, p, u2, out)
+                               : sample_chosen(w, wanted, p, u1, u2, out);
 }
 
 bool world_lights_are_far(const struct world *w) {

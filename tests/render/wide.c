@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices that are shaded sixteen at a time have the bits of those shaded one by one, for every
-// sampler; and pictures of scenes whose packets mix pixels do not depend on the crop. Materials by
-// themselves: property/bsdf_wide.c.
+// Vertices that are shaded, and lights that are sampled, sixteen at a time have the bits of those one
+// by one, for every sampler; and pictures of scenes whose packets mix pixels do not depend on the
+// crop. Materials by themselves: property/bsdf_wide.c.
 #include "math/hash.h"
 #include "render/picture.h"
 
@@ -33,12 +33,15 @@ static const char scene[] =
     "<string name='material' value='Cu'/></bsdf></shape>"
     "<shape type='sphere'><point name='center' x='0.8' y='0.5' z='0.3'/>"
     "<float name='radius' value='0.5'/><bsdf type='plastic'/></shape>"
-    "<shape type='rectangle'><transform name='to_world'><scale value='0.5'/>"
-    "<rotate x='1' angle='90'/><translate y='2.2'/></transform>"
-    "<emitter type='area'><rgb name='radiance' value='6,5,4'/></emitter></shape>%s</scene>";
+    "%s</scene>";
+
+#define LAMP                                                                                       \
+    "<shape type='rectangle'><transform name='to_world'><scale value='0.5'/>"                      \
+    "<rotate x='1' angle='90'/><translate y='2.2'/></transform>"                                   \
+    "<emitter type='area'><rgb name='radiance' value='6,5,4'/></emitter></shape>"
 
 static const char more_lights[] =
-    "<emitter type='constant'><rgb name='radiance' value='0.1,0.2,0.3'/></emitter>"
+    LAMP "<emitter type='constant'><rgb name='radiance' value='0.1,0.2,0.3'/></emitter>"
     "<emitter type='point'><point name='position' x='-2' y='3' z='2'/>"
     "<rgb name='intensity' value='3,2,1'/></emitter>"
     "<shape type='sphere'><point name='center' x='0' y='1.2' z='-1'/>"
@@ -46,7 +49,7 @@ static const char more_lights[] =
 
 // Enough triangles for the light tree, beside a light without a place.
 static const char many_lights[] =
-    "<emitter type='constant'><rgb name='radiance' value='0.1,0.2,0.3'/></emitter>"
+    LAMP "<emitter type='constant'><rgb name='radiance' value='0.1,0.2,0.3'/></emitter>"
     "<shape type='cube'><transform name='to_world'><scale value='0.2'/>"
     "<translate x='-0.5' y='1' z='0.8'/></transform><emitter type='area'>"
     "<rgb name='radiance' value='5,6,7'/></emitter></shape>"
@@ -55,19 +58,24 @@ static const char many_lights[] =
     "<rgb name='radiance' value='9,7,2'/></emitter></shape>";
 
 static const char sky[] =
-    "<emitter type='sunsky'><vector name='sun_direction' x='0.3' y='0.2' z='0.8'/>"
+    LAMP "<emitter type='sunsky'><vector name='sun_direction' x='0.3' y='0.2' z='0.8'/>"
     "<float name='sun_aperture' value='20'/></emitter>";
 
 // Beside other lights, so that lanes of a packet choose different ones.
 static const char picture_of_sky[] =
-    "<emitter type='envmap'><string name='filename' value='sky.exr'/>"
+    LAMP "<emitter type='envmap'><string name='filename' value='sky.exr'/>"
     "<transform name='to_world'><rotate x='1' y='2' angle='50'/></transform></emitter>";
+// Alone, so that their samples are taken ahead where surfaces are shaded one by one.
+static const char only_sky[] =
+    "<emitter type='sunsky'><vector name='sun_direction' x='0.3' y='0.2' z='0.8'/></emitter>";
+static const char only_picture[] =
+    "<emitter type='envmap'><string name='filename' value='sky.exr'/></emitter>";
 static const char picture_and_point[] =
-    "<emitter type='envmap'><string name='filename' value='sky.exr'/></emitter>"
+    LAMP "<emitter type='envmap'><string name='filename' value='sky.exr'/></emitter>"
     "<emitter type='point'><point name='position' x='-2' y='3' z='2'/>"
     "<rgb name='intensity' value='3,2,1'/></emitter>";
 
-enum { LANES = 128, SAMPLES = 64 };
+enum { LANES = 128, SAMPLES = 64, MOST_LIGHTS = 8 };
 
 // Wider than one node of its sums, with black texels and a bright one.
 static void write_sky(void) {
@@ -129,11 +137,21 @@ static void trace(const struct job *job, const struct response *response, struct
     }
 }
 
+// No light is sampled for many lanes at once.
+static void sample_lights_alone(const struct world *w, struct light_type *types) {
+    for (uint32_t i = 0; i < w->light_count; i++) {
+        types[i] = *w->lights[i].type;
+        types[i].sample_wide = NULL;
+        w->lights[i].type = &types[i];
+    }
+}
+
 static void together_is_as_one_by_one(const char *settings, const char *sampler,
                                       const char *others) {
     // Another response than the physical one is asked at every vertex.
     const struct response one_by_one = response_physical;
     static struct sum_sink a, b;
+    struct light_type types[MOST_LIGHTS];
     struct job job;
     char text[8192];
     int different = 0, lit = 0;
@@ -143,6 +161,8 @@ static void together_is_as_one_by_one(const char *settings, const char *sampler,
         exit(1);
     a = b = (struct sum_sink){.sink = {&sum_type, false}};
     trace(&job, &response_physical, &a);
+    CHECK(job.world->light_count <= MOST_LIGHTS);
+    sample_lights_alone(job.world, types);
     trace(&job, &one_by_one, &b);
     for (int i = 0; i < LANES; i++) {
         different += memcmp(&a.sums[i], &b.sums[i], sizeof a.sums[i]) != 0;
@@ -180,9 +200,10 @@ int main(void) {
     scene_folder_open();
     write_sky();
     for (int i = 0; samplers.entries[i]; i++) {
-        together_is_as_one_by_one("", samplers.entries[i]->name, "");
+        together_is_as_one_by_one("", samplers.entries[i]->name, LAMP);
         together_is_as_one_by_one("", samplers.entries[i]->name, more_lights);
         together_is_as_one_by_one("", samplers.entries[i]->name, sky);
+        together_is_as_one_by_one("", samplers.entries[i]->name, only_picture);
     }
     together_is_as_one_by_one("<boolean name='hide_emitters' value='true'/>"
                               "<boolean name='strict_normals' value='true'/>", "sobol", more_lights);
@@ -190,8 +211,9 @@ int main(void) {
     together_is_as_one_by_one("", "sobol", many_lights);
     together_is_as_one_by_one("", "sobol", picture_of_sky);
     together_is_as_one_by_one("", "sobol", picture_and_point);
+    together_is_as_one_by_one("", "sobol", only_sky);
     together_is_as_one_by_one("<integer name='max_depth' value='3'/>"
-                              "<integer name='rr_depth' value='1'/>", "independent", "");
+                              "<integer name='rr_depth' value='1'/>", "independent", LAMP);
     crops_give_the_same_bits();
     scene_folder_close();
     return check_result();
