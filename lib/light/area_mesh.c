@@ -224,20 +224,23 @@ static void place_wide(const struct area_mesh *a, wide x, wide y, struct light_s
 
 wide_mask area_rectangle_sample_wide(const struct area_mesh *a, const struct wide3 *p,
                                      const wide u[2], struct light_samples *s) {
-    wide x = u[0], y = u[1], solid_angle = {0};
+    float x[WIDE_LANES], y[WIDE_LANES], angles[WIDE_LANES] = {0}; // set lane by lane
     const struct wide3 from_middle = wide3_sub(*p, wide3_of(a->middle));
     const struct wide3 from_corner = wide3_sub(*p, wide3_of(a->corner));
     uint32_t near = wide_bits((wide_dot(from_middle, from_middle) < 5 * a->area) &
                               (wide_dot(from_corner, wide3_of(a->n)) > a->least_height));
+    memcpy(x, &u[0], sizeof x);
+    memcpy(y, &u[1], sizeof y);
     for (; near; near &= near - 1) {
         const int i = __builtin_ctz(near);
         struct vec2 xy = {x[i], y[i]};
-        solid_angle[i] = solid_angle_sample_rectangle(a, wide3_lane(p, i), xy, &xy);
+        angles[i] = solid_angle_sample_rectangle(a, wide3_lane(p, i), xy, &xy);
         x[i] = xy.x;
         y[i] = xy.y;
     }
-    place_wide(a, x, y, s);
+    place_wide(a, wide_load(x), wide_load(y), s);
     const struct wide3 d = wide3_sub(s->p, *p);
+    const wide solid_angle = wide_load(angles);
     s->distance = wide_sqrt(wide_dot(d, d));
     s->wi = wide_normalize(d);
     const wide cosine = -wide_dot(s->wi, s->n);

@@ -11,52 +11,63 @@ static const float SMALLEST_SINE = 1e-7f;
 // The patches of sixteen lanes.
 struct patches {
     uint32_t x[WIDE_LANES], y[WIDE_LANES];
-    wide left, right, top, bottom; // sums at their edges
-    struct wide3 colour[4];        // of the corners, as struct patch has them
+    const float *texel[WIDE_LANES]; // at their first corner
+    wide left, right, top, bottom;  // sums at their edges
+    wide row_weight[2];
+    struct wide3 colour[4];         // of the corners, as struct patch has them
     wide w[4], mean;
 };
 
-static const float *texel(const struct sphere_table *t, uint32_t x, uint32_t y) {
-    return t->texels[(size_t)y * ((size_t)t->width + 1) + x];
+// A pair of texels may lie across the end of a line.
+static void prefetch_pair(const float *texel) {
+    __builtin_prefetch(texel);
+    __builtin_prefetch(texel + 5);
 }
 
 static void find_patches(const struct sphere_table *t, const wide u[2], struct patches *p) {
     static const uint32_t only[WIDE_LANES] = {0};
+    const size_t stride = (size_t)t->width + 1;
     cdf_nodes_find_wide(&t->rows, only, u[1], p->y);
     cdf_nodes_find_wide(&t->columns, p->y, u[0], p->x);
-    for (int i = 0; i < WIDE_LANES; i++)
-        for (uint32_t k = 0; k < 2; k++) { // a pair of texels may lie across the end of a line
-            __builtin_prefetch(texel(t, p->x[i], p->y[i] + k));
-            __builtin_prefetch(texel(t, p->x[i] + 1, p->y[i] + k) + 2);
-        }
-    float edge[4][WIDE_LANES]; // a vector whose lanes are set one by one waits for each
+    for (int i = 0; i < WIDE_LANES; i++) {
+        p->texel[i] = t->texels[p->y[i] * stride + p->x[i]];
+        prefetch_pair(p->texel[i]);
+        prefetch_pair(p->texel[i] + 3 * stride);
+    }
+}
+
+// In memory: a vector whose lanes are set one by one waits for each.
+static void load_sums(const struct sphere_table *t, struct patches *p) {
+    float sums[4][WIDE_LANES], weights[2][WIDE_LANES];
     for (int i = 0; i < WIDE_LANES; i++) {
         const float *rows = cdf_nodes_row(&t->rows, 0) + p->y[i];
         const float *columns = cdf_nodes_row(&t->columns, p->y[i]) + p->x[i];
-        edge[0][i] = rows[0];
-        edge[1][i] = rows[1];
-        edge[2][i] = columns[0];
-        edge[3][i] = columns[1];
+        for (int k = 0; k < 2; k++) {
+            sums[k][i] = rows[k];
+            sums[k + 2][i] = columns[k];
+            weights[k][i] = t->row_weight[p->y[i] + (uint32_t)k];
+        }
     }
-    p->top = wide_load(edge[0]);
-    p->bottom = wide_load(edge[1]);
-    p->left = wide_load(edge[2]);
-    p->right = wide_load(edge[3]);
+    p->top = wide_load(sums[0]);
+    p->bottom = wide_load(sums[1]);
+    p->left = wide_load(sums[2]);
+    p->right = wide_load(sums[3]);
+    for (int k = 0; k < 2; k++)
+        p->row_weight[k] = wide_load(weights[k]);
 }
 
 static void weigh_corners(const struct sphere_table *t, struct patches *p) {
-    for (uint32_t k = 0; k < 4; k++) {
-        const float *row[WIDE_LANES];
-        wide c[4], weight;
-        for (int i = 0; i < WIDE_LANES; i++) {
-            row[i] = texel(t, p->x[i] + (k & 1), p->y[i] + (k >> 1));
-            weight[i] = t->row_weight[p->y[i] + (k >> 1)];
-        }
-        wide_gather4(row, c);
+    const size_t below = 3 * ((size_t)t->width + 1);
+    for (size_t k = 0; k < 4; k++) {
+        const float *corner[WIDE_LANES];
+        wide c[4];
+        for (int i = 0; i < WIDE_LANES; i++)
+            corner[i] = p->texel[i] + 3 * (k & 1) + below * (k >> 1);
+        wide_gather4(corner, c);
         p->colour[k] = (struct wide3){c[0], c[1], c[2]};
         const wide luminance = 0.212671f * (c[0] * t->unit) + 0.715160f * (c[1] * t->unit) +
                                0.072169f * (c[2] * t->unit);
-        p->w[k] = luminance * weight;
+        p->w[k] = luminance * p->row_weight[k >> 1];
     }
     p->mean = 0.25f * (p->w[0] + p->w[1] + p->w[2] + p->w[3]);
 }
@@ -113,6 +124,7 @@ wide_mask sphere_table_sample_wide(const struct sphere_table *t, const wide u[2]
     if (t->black)
         return wide_mask_of(0);
     find_patches(t, u, &p);
+    load_sums(t, &p);
     weigh_corners(t, &p);
     place(&p, u, &fx, &fy);
     wide_sincos_turn((numbers(p.x) + fx + 0.5f) / (float)t->width - 1, &sin_phi, &cos_phi);

@@ -39,10 +39,11 @@ static struct wide3 cone_directions(const struct sunsky *s, const wide u[2]) {
     return wide_to_world(&f, (struct wide3){r * cosine, r * sine, 1 - height});
 }
 
-// Directions for the lanes that sample the sky, and its density in them.
+// Directions for the lanes that sample the sky, and its density in them. What is set lane by lane is
+// set in memory: a vector would wait for each lane.
 static struct wide3 sample_sky(const struct sunsky *s, uint32_t lanes, const wide u[2],
-                               wide *density) {
-    wide row = {0}, column = {0};
+                               float density[WIDE_LANES]) {
+    float row[WIDE_LANES] = {0}, column[WIDE_LANES] = {0};
     for (; lanes; lanes &= lanes - 1) {
         const int i = __builtin_ctz(lanes);
         float pmf, y, x;
@@ -50,13 +51,14 @@ static struct wide3 sample_sky(const struct sunsky *s, uint32_t lanes, const wid
         const uint32_t c = distribution_sample(&s->columns[r], u[0][i], &pmf, &x);
         row[i] = (float)r + y;
         column[i] = (float)c + x;
-        (*density)[i] = s->density[r][c];
+        density[i] = s->density[r][c];
     }
-    return cell_directions(row, column);
+    return cell_directions(wide_load(row), wide_load(column));
 }
 
 // sky_pdf of the lanes that sample the sun.
-static void find_density(const struct sunsky *s, uint32_t lanes, struct wide3 w, wide *density) {
+static void find_density(const struct sunsky *s, uint32_t lanes, struct wide3 w,
+                         float density[WIDE_LANES]) {
     const wide_int row = __builtin_convertvector(w.z * SUNSKY_ROWS, wide_int);
     const wide_int column =
         __builtin_convertvector(turn_of_wide(w.y, w.x) * SUNSKY_COLUMNS, wide_int);
@@ -64,7 +66,7 @@ static void find_density(const struct sunsky *s, uint32_t lanes, struct wide3 w,
         const int i = __builtin_ctz(lanes);
         const int r = row[i] < SUNSKY_ROWS ? row[i] : SUNSKY_ROWS - 1;
         const int c = column[i] < SUNSKY_COLUMNS ? column[i] : SUNSKY_COLUMNS - 1;
-        (*density)[i] = s->density[r][c];
+        density[i] = s->density[r][c];
     }
 }
 
@@ -86,18 +88,18 @@ wide_mask sunsky_aim_wide(const void *data, const struct wide3 *p, const wide u[
     const wide_mask sky = u[0] < share;
     const wide x = wide_select(sky, u[0] / share, (u[0] - share) / (1 - share));
     const wide inside[2] = {wide_min(x, wide_of(0x1.fffffep-1f)), u[1]};
-    wide density = {0};
+    float density[WIDE_LANES] = {0};
     struct wide3 w = cone_directions(s, inside);
     if (wide_any(sky))
-        w = wide3_select(sky, sample_sky(s, wide_bits(sky), inside, &density), w);
+        w = wide3_select(sky, sample_sky(s, wide_bits(sky), inside, density), w);
     w = wide_normalize(w);
     const wide_mask above = w.z >= 0;
     if (share > 0)
-        find_density(s, wide_bits(above & ~sky), w, &density);
+        find_density(s, wide_bits(above & ~sky), w, density);
     const struct wide_frame world = {wide3_of(s->world.x), wide3_of(s->world.y),
                                      wide3_of(s->world.z)};
     *out = (struct light_samples){.wi = wide_to_world(&world, w), .p = none, .p_error = none,
                                   .n = none, .emission = none, .distance = wide_of(INFINITY),
-                                  .pdf_sa = mixture_pdf(s, w, density)};
+                                  .pdf_sa = mixture_pdf(s, w, wide_load(density))};
     return above & (out->pdf_sa > 0);
 }
