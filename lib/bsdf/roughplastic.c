@@ -13,32 +13,14 @@
 // (bsdf/facet_loss.h): a broad lobe is added to the coat's reflection, the rest to T, and what the
 // coat reflects inside is all that it does not transmit, so that a white material returns
 // everything.
-#include "bsdf/boundary_table.h"
-#include "bsdf/roughness.h"
-#include "bsdf/smooth.h"
+#include "bsdf/roughplastic.h"
+
 #include "math/fresnel.h"
 #include "math/quadrature.h"
 #include "math/warp.h"
 
 enum { NODES_OUTSIDE = 32, NODES_INSIDE = 32, DIRECTIONS = 64, OUTSIDE = 32 };
 enum { NODES_COMPENSATED = 96 };
-
-struct roughplastic {
-    struct dielectric_index index;
-    struct texture_ref diffuse, specular;
-    bool nonlinear;
-    int distribution;
-    float alpha;
-    int energy;
-    // made by prepare
-    struct plastic_coat coat;     // its `leaving` is of the rough coat where there is one
-    struct microfacet facets;
-    bool smooth;
-    float mean_transmitted;       // 2 * integral of T(c) c dc
-    struct boundary_table outside;
-    struct facet_loss loss; // on the outside
-    float regained;         // share of the loss that the coat reflects
-};
 
 struct rough_data {
     struct closure head;
@@ -161,6 +143,14 @@ static uint32_t lobes(const void *data) {
     return (self->smooth ? LOBE_SPECULAR : LOBE_GLOSSY) | LOBE_DIFFUSE | LOBE_REFLECTION;
 }
 
+static bool widen(const void *data, struct wide_material *m) {
+    const struct roughplastic *self = data;
+    m->kind = &roughplastic_wide[self->distribution];
+    m->data = self;
+    m->textured = self->diffuse.texture || self->specular.texture;
+    return !self->smooth && self->energy != ENERGY_COMPENSATED;
+}
+
 static const struct closure *resolve(const void *data, const struct bsdf_point *point, vec3 wo,
                                      struct closure_stack *stack) {
     const struct roughplastic *self = data;
@@ -239,5 +229,5 @@ const struct bsdf_type bsdf_roughplastic = {
               .params = params, .size = sizeof(struct roughplastic)},
     .claims = CLAIM_RECIPROCAL,
     .prepare = prepare, .lobes = lobes, .resolve = resolve, .eval = eval, .sample = sample,
-    .albedo = albedo,
+    .albedo = albedo, .widen = widen,
 };

@@ -4,6 +4,18 @@
 
 #include "math/wide.h"
 
+// fresnel_dielectric without the cosine of the refracted direction.
+static inline wide wide_fresnel_dielectric(wide cos_i, wide eta) {
+    const wide d = (eta - 1) * (eta + 1), c2 = cos_i * cos_i, q2 = c2 + d;
+    const wide q = wide_sqrt(q2), e2 = eta * eta;
+    const wide s = 1 / (cos_i + q), p = 1 / (q + e2 * cos_i);
+    const wide r_s = d * s * s;
+    const wide r_p = d * (1 - c2 * (1 + e2)) * p * p;
+    const wide one = wide_of(1), none = {0};
+    const wide F = wide_min(0.5f * (r_s * r_s + r_p * r_p), one);
+    return wide_select(d == 0, none, wide_select(q2 <= 0, one, F));
+}
+
 // One channel of fresnel_conductor.
 static inline wide wide_fresnel_conductor_channel(wide c, wide eta, wide k) {
     const wide c2 = c * c, s2 = wide_max(1 - c2, wide_of(0));
