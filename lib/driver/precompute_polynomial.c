@@ -92,7 +92,7 @@ static bool work(void *user, const struct ranks_unit *u, struct ranks_part *part
     forget_handed(t);
     *count = u->tiles;
     if ((stop && *stop) ||
-        !tracer_run(t->tracer, u->tile, u->tiles, (uint32_t)u->first, u->count) || (stop && *stop))
+        !tracer_run(t->tracer, u->tile, u->tiles, (uint32_t)u->first, u->count))
         return false;
     for (uint32_t i = 0; i < u->tiles && parts; i++)
         parts[i] = (struct ranks_part){t->handed[u->tile + i].values, t->handed[u->tile + i].count};

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ranges of lights: four quarters of the sky's triangles merge to the whole, with the lights that are
-// sampled and with what is not editable. Work that is stopped is gone on with to the same bytes.
+// sampled and with what is not editable. Work that is stopped is gone on with to the same bytes; with all
+// bounces, what is whole by then is written.
 #include <sys/stat.h>
 
+#include "driver/precompute_polynomial.h"
 #include "edit_picture.h"
 #include "scene_text.h"
 #include "transport/tensor_remake.h"
@@ -127,6 +129,27 @@ static void work_goes_on(void) {
     CHECK(precompute_edit(&o, &r) && !same_bytes(paths[0], paths[4]));
 }
 
+static void stop_at_the_end(void *user, double done) {
+    (void)user;
+    stop = done >= 1;
+}
+
+// A stop that comes when the last strip is traced, before it is said that the pass is done.
+static void whole_passes_are_written(void) {
+    struct polynomial_report r;
+    struct stat st;
+    const struct polynomial_options o = {
+        .job = {.scene = scene_path("scene.xml"), .spp = 64, .threads = 1, .stop = &stop}, .bounces = 1,
+        .series = {16}, .output = paths[0], .command = "test", .version = "test",
+        .progress = stop_at_the_end};
+    unlink(paths[0]);
+    capture_begin();
+    const bool whole = precompute_polynomial(&o, &r);
+    capture_end();
+    CHECK(stop && whole && !r.stopped && r.samples == 64 && stat(paths[0], &st) == 0);
+    stop = 0;
+}
+
 int main(void) {
     scene_folder_open();
     scene_write("scene.xml", scene);
@@ -139,6 +162,7 @@ int main(void) {
     quarters_are_the_whole();
     ranges_with_gaps_are_refused();
     work_goes_on();
+    whole_passes_are_written();
     scene_folder_close();
     return check_result();
 }
