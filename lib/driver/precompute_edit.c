@@ -154,7 +154,7 @@ static bool make_workers(struct precompute *p) {
     p->report->sums_bytes = (uint64_t)p->threads * halves *
                             (n * sizeof(double) + n * LIGHT_LOOP_PIXELS * sizeof(float));
     if ((double)p->report->sums_bytes > most) {
-        log_error("the sums of %d pixels at once take %.2f GB, more than the %.2f GB of --memory; "
+        log_error("the sums of %d pixels at once take %.3g GB, more than the %.3g GB of --memory; "
                   "take fewer --threads or fewer bins", p->threads,
                   (double)p->report->sums_bytes * 1e-9, most * 1e-9);
         return false;

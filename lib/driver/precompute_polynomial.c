@@ -45,7 +45,7 @@ static bool fit_memory(struct run *r) {
         if (sums->parts == EDIT_MOST_PARTS)
             break;
     }
-    log_error("the sums of %d strips of 4 rows at once take %.1f GB, more than the %.1f GB of "
+    log_error("the sums of %d strips of 4 rows at once take %.3g GB, more than the %.3g GB of "
               "--memory; take fewer --threads, bounces or bins", threads_of(r),
               (double)r->report->sums_bytes * 1e-9, most * 1e-9);
     return false;

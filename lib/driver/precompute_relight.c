@@ -250,7 +250,7 @@ static bool memory_suffices(const struct plan *p, struct relight_report *r) {
     r->sums_bytes = (uint64_t)threads_of(p) * tensor_sums_worker_bytes(&p->basis->source);
     if ((double)r->sums_bytes <= most)
         return true;
-    log_error("the sums of %d tiles at once take %.1f GB, more than the %.1f GB of --memory; "
+    log_error("the sums of %d tiles at once take %.3g GB, more than the %.3g GB of --memory; "
               "take fewer --threads or fewer coefficients", threads_of(p),
               (double)r->sums_bytes * 1e-9, most * 1e-9);
     return false;

@@ -106,6 +106,10 @@ contains "$err" "among the others"
 expect 1 "$relume" precompute edit "$scene" -o "$folder/x" "${options[@]}" --samples 100:250
 contains "$err" "128:256"
 
+# What is too little memory is told in full, however little.
+expect 1 "$relume" precompute edit "$scene" -o "$folder/x" "${options[@]}" --memory 0.00012
+contains "$err" "more than the 0.00012 GB of --memory"
+
 # Killed at random moments until it is done.
 run=("$relume" precompute edit "$scene" -o "$folder/killed.safetensors" "${options[@]}" --spp "$spp"
     --checkpoint 0.01 --resume)
