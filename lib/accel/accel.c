@@ -20,6 +20,7 @@
 #endif
 
 #include "accel/few.h"
+#include "accel/few_blockers.h"
 #include "accel/placed_quadric.h"
 #include "base/log.h"
 #include "base/mem.h"
@@ -32,7 +33,7 @@ struct accel {
     bool has_instances;
     struct placed_quadric *quadrics; // by shape index; NULL: the scene has none
     struct few *few;                 // NULL: the scene is too large for it
-    struct few *largest;             // of such a scene; NULL: no facet is large
+    struct few *blockers;            // of such a scene, the first to try; NULL: none
     atomic_llong bytes;
 };
 
@@ -215,8 +216,6 @@ struct accel *accel_create(const struct scene *scene, int threads) {
     if (rtcGetDeviceError(a->device) != RTC_ERROR_NONE)
         goto fail;
     a->few = few_create(scene);
-    if (!a->few)
-        a->largest = few_create_largest(scene);
     return a;
 fail:
     accel_destroy(a);
@@ -233,10 +232,17 @@ void accel_destroy(struct accel *a) {
     if (a->device)
         rtcReleaseDevice(a->device);
     few_destroy(a->few);
-    few_destroy(a->largest);
+    few_destroy(a->blockers);
     mem_free(a->groups);
     mem_free(a->quadrics);
     mem_free(a);
+}
+
+void accel_learn_blockers(struct accel *a, const struct scene *scene, const struct ray *rays,
+                          uint32_t count) {
+    struct few_facet facets[FEW_BLOCKERS];
+    few_destroy(a->blockers);
+    a->blockers = few_create_of(facets, few_blockers_of(a, scene, rays, count, facets));
 }
 
 // ---- queries ----------------------------------------------------------------------------------
@@ -397,10 +403,10 @@ uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PAC
 uint32_t accel_occluded_each(const struct accel *a, const struct ray rays[ACCEL_PACKET],
                              uint32_t active) {
     uint32_t blocked = 0;
-    if (a->largest) {
+    if (a->blockers) {
         struct accel_rays r;
         rays_from(rays, active, &r);
-        blocked = few_occluded(a->largest, &r);
+        blocked = few_occluded(a->blockers, &r);
     }
     for (uint32_t left = active & ~blocked; left; left &= left - 1) {
         const int i = __builtin_ctz(left);

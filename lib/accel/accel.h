@@ -41,6 +41,10 @@ size_t accel_bytes(const struct accel *a); // taken by the acceleration structur
 void *accel_embree_scene(const struct accel *a);
 const char *accel_version(void);           // "Embree 3.13.5"
 
+// Has accel_occluded_each try the facets first that block most of these rays.
+void accel_learn_blockers(struct accel *a, const struct scene *scene, const struct ray *rays,
+                          uint32_t count);
+
 // Call once on every thread that traces: sets the floating point mode (denormals are zero).
 void accel_thread_init(void);
 
@@ -57,7 +61,7 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
 uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
                           uint32_t active, bool coherent);
 // The same for rays that have nothing in common, one by one: what each finds does not depend on the
-// others. They pass the scene's largest facets first, side by side, which in a room block half of all
+// others. They pass the facets that were learnt first, side by side, which in a room block half of all
 // shadow rays.
 uint32_t accel_occluded_each(const struct accel *a, const struct ray rays[ACCEL_PACKET],
                              uint32_t active);

@@ -12,7 +12,6 @@
 
 #include "accel/few_box.h"
 #include "accel/few_facet.h"
-#include "accel/few_largest.h"
 #include "accel/few_sphere.h"
 #include "base/mem.h"
 #include "scene/quadric.h"
@@ -117,16 +116,14 @@ struct few *few_create(const struct scene *s) {
     return f;
 }
 
-struct few *few_create_largest(const struct scene *s) {
-    struct few_facet largest[FEW_LARGEST];
-    const uint32_t count = few_largest_of(s, largest);
+struct few *few_create_of(const struct few_facet *facets, uint32_t count) {
     if (!count)
         return NULL;
     struct few *f = mem_array(1, sizeof *f);
     f->facets = mem_array(count, sizeof *f->facets);
     f->boxes = mem_array(count, sizeof *f->boxes);
     for (uint32_t i = 0; i < count; i++) {
-        f->facets[i] = largest[i];
+        f->facets[i] = facets[i];
         f->boxes[i] = (struct few_box){.first = i, .count = 1};
     }
     f->facet_count = f->box_count = count;

@@ -7,13 +7,14 @@
 #pragma once
 
 #include "accel/accel.h"
+#include "accel/few_facet.h"
 
 struct few;
 
 // NULL when the scene holds too much for it, or instances.
 struct few *few_create(const struct scene *scene);
-// Of any scene the facets that rays meet most. NULL where no facet is large beside the others.
-struct few *few_create_largest(const struct scene *scene);
+// Of these facets alone. NULL: there are none.
+struct few *few_create_of(const struct few_facet *facets, uint32_t count);
 void few_destroy(struct few *f);
 void few_intersect(const struct few *f, const struct accel_rays *rays, struct accel_hits *hits);
 uint32_t few_occluded(const struct few *f, const struct accel_rays *rays); // a bit a lane

@@ -159,6 +159,20 @@ static bool prepare_sensor(struct job *job) {
     return type->own_area || filter_sampler_init(&job->filter, s->filter);
 }
 
+// Where the sensor's path of two random numbers begins.
+static void start_path(const void *scene, struct vec2 u, struct ray *ray) {
+    const struct scene *s = scene;
+    const struct sensor_type *sensor = sensor_type_of(s->sensors[0]);
+    const float x = u.x * (float)s->film.width, y = u.y * (float)s->film.height;
+    struct sensor_place place;
+    if (!sensor->place) {
+        sensor->ray(s->sensors[0]->data, x, y, (struct vec2){0.5f, 0.5f}, ray);
+        return;
+    }
+    sensor->place(s->sensors[0]->data, x, y, &place);
+    *ray = (struct ray){place.p + place.n, -place.n, 0, INFINITY};
+}
+
 static bool prepare(struct job *job, const struct job_options *o) {
     struct scene *s = job->scene;
     job->film = (struct film_options){.alpha = s->film.alpha, .paths = o->paths,
@@ -170,6 +184,7 @@ static bool prepare(struct job *job, const struct job_options *o) {
         !prepare_integrator(o, s, job->world, &job->method, &job->film) ||
         !prepare_sensor(job) || (o->light_groups && !light_groups_init(&job->groups, s)))
         return false;
+    world_learn_blockers(job->world, start_path, s);
     job->film.group_count = job->groups.count;
     job->film.group_names = job->groups.names;
     job->film.group_of_light = job->groups.of_light;

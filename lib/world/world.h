@@ -71,6 +71,11 @@ struct world {
 struct world *world_create(struct scene *scene, int threads);
 void world_destroy(struct world *w);
 
+// Finds the facets that shadow rays are best tried against first, with paths that `start` begins at
+// two random numbers.
+void world_learn_blockers(struct world *w, void (*start)(const void *, struct vec2, struct ray *),
+                          const void *context);
+
 // Has a shape's points shaded together by this material, where they can be: its own, or that of a
 // response which answers so (integrator/response.h).
 void world_shade_wide(struct world *w, uint32_t shape, const struct object *bsdf);
