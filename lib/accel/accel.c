@@ -21,6 +21,7 @@
 
 #include "accel/few.h"
 #include "accel/few_blockers.h"
+#include "accel/few_packet.h"
 #include "accel/placed_quadric.h"
 #include "base/log.h"
 #include "base/mem.h"
@@ -286,27 +287,12 @@ bool accel_occluded(const struct accel *a, const struct ray *ray) {
     return r.tfar < 0;
 }
 
-static void rays_from(const struct ray rays[ACCEL_PACKET], uint32_t active, struct accel_rays *p) {
-    const size_t fields[3] = {offsetof(struct ray, o), offsetof(struct ray, d),
-                              offsetof(struct ray, tmin)};
-    wide f[3][4];
-    for (int k = 0; k < 3; k++) {
-        const float *row[ACCEL_PACKET];
-        for (int i = 0; i < ACCEL_PACKET; i++)
-            row[i] = (const float *)(const void *)((const char *)&rays[i] + fields[k]);
-        wide_gather4(row, f[k]);
-    }
-    const wide_mask traced = wide_mask_of(active);
-    *p = (struct accel_rays){{f[0][0], f[0][1], f[0][2]}, {f[1][0], f[1][1], f[1][2]}, f[2][0],
-                             wide_select(traced, f[2][1], wide_of(-INFINITY))};
-}
-
 static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, int valid[ACCEL_PACKET],
                         struct RTCRay16 *p) {
     const wide_int first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
     const wide_mask traced = wide_mask_of(active);
     struct accel_rays r;
-    rays_from(rays, active, &r);
+    few_packet_rays(rays, active, &r);
     memcpy(valid, &traced, sizeof traced);
     memcpy(p->org_x, &r.o.x, sizeof r.o.x);
     memcpy(p->org_y, &r.o.y, sizeof r.o.y);
@@ -326,22 +312,10 @@ bool accel_mixes_packets(const struct accel *a) {
     return a->few != NULL;
 }
 
-static void few_intersect16(const struct few *f, const struct ray rays[ACCEL_PACKET],
-                            uint32_t active, struct accel_hit hits[ACCEL_PACKET]) {
-    struct accel_rays r;
-    struct accel_hits h;
-    rays_from(rays, active, &r);
-    few_intersect(f, &r, &h);
-    for (int i = 0; i < ACCEL_PACKET; i++)
-        if (active >> i & 1)
-            hits[i] = (struct accel_hit){h.t[i], h.u[i], h.v[i], h.shape[i], h.primitive[i],
-                                         SCENE_NONE};
-}
-
 void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET], uint32_t active,
                        bool coherent, struct accel_hit hits[ACCEL_PACKET]) {
     if (a->few) {
-        few_intersect16(a->few, rays, active, hits);
+        few_packet_intersect(a->few, rays, active, hits);
         return;
     }
     _Alignas(64) int valid[ACCEL_PACKET];
@@ -375,7 +349,7 @@ uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PAC
                           uint32_t active, bool coherent) {
     if (a->few) {
         struct accel_rays r;
-        rays_from(rays, active, &r);
+        few_packet_rays(rays, active, &r);
         return few_occluded(a->few, &r);
     }
     _Alignas(64) int valid[ACCEL_PACKET];
@@ -400,17 +374,43 @@ uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PAC
     return blocked;
 }
 
-uint32_t accel_occluded_each(const struct accel *a, const struct ray rays[ACCEL_PACKET],
-                             uint32_t active) {
-    uint32_t blocked = 0;
-    if (a->blockers) {
-        struct accel_rays r;
-        rays_from(rays, active, &r);
-        blocked = few_occluded(a->blockers, &r);
+enum { STREAM = 256 };
+
+// Embree 3 sorts the rays of a stream by octant and walks the tree for those of one together, each
+// by itself.
+static void trace_stream(const struct accel *a, struct RTCRay *rays, uint32_t count) {
+#if EMBREE_4
+    for (uint32_t i = 0; i < count; i++)
+        rtcOccluded1(a->world, &rays[i], NULL);
+#else
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1M(a->world, &context, rays, count, sizeof *rays);
+#endif
+}
+
+static void occluded_stream(const struct accel *a, const struct ray *rays, uint32_t count,
+                            bool *blocked) {
+    struct RTCRay left[STREAM];
+    bool *result[STREAM];
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < count; i += ACCEL_PACKET) {
+        const uint32_t most = count - i < ACCEL_PACKET ? count - i : ACCEL_PACKET;
+        const uint32_t bits = a->blockers ? few_packet_blocked(a->blockers, rays + i, most) : 0;
+        for (uint32_t k = i; k < i + most; k++) {
+            blocked[k] = bits >> (k - i) & 1;
+            left[n] = to_embree(&rays[k]);
+            result[n] = &blocked[k];
+            n += !blocked[k];
+        }
     }
-    for (uint32_t left = active & ~blocked; left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        blocked |= (uint32_t)accel_occluded(a, &rays[i]) << i;
-    }
-    return blocked;
+    trace_stream(a, left, n);
+    for (uint32_t k = 0; k < n; k++)
+        *result[k] = left[k].tfar < 0;
+}
+
+void accel_occluded_each(const struct accel *a, const struct ray *rays, uint32_t count,
+                         bool *blocked) {
+    for (uint32_t i = 0; i < count; i += STREAM)
+        occluded_stream(a, rays + i, count - i < STREAM ? count - i : STREAM, blocked + i);
 }

@@ -60,8 +60,8 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
 // Bit i of the result: ray i is blocked.
 uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
                           uint32_t active, bool coherent);
-// The same for rays that have nothing in common, one by one: what each finds does not depend on the
-// others. They pass the facets that were learnt first, side by side, which in a room block half of all
-// shadow rays.
-uint32_t accel_occluded_each(const struct accel *a, const struct ray rays[ACCEL_PACKET],
-                             uint32_t active);
+// The same for any number of rays that have nothing in common: what each finds does not depend on the
+// others. They pass the facets that were learnt first, side by side, which in a room block half of
+// all shadow rays.
+void accel_occluded_each(const struct accel *a, const struct ray *rays, uint32_t count,
+                         bool *blocked);

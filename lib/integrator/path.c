@@ -220,38 +220,59 @@ static enum tracing tracing_of(const struct world *w, const struct packet *p, bo
     return pays || accel_mixes_packets(w->accel) ? TRACE_ANY : TRACE_EACH;
 }
 
-static void finish_as_packet(struct trace_context *ctx, struct lane *lanes, const struct packet *p,
-                             enum tracing how) {
-    const struct accel *accel = ctx->world->accel;
+static uint32_t blocked_together(const struct accel *accel, const struct lane *lanes,
+                                 const struct packet *p, bool together) {
     struct ray rays[SINK_LANES];
-    const uint32_t active = (1u << p->count) - 1;
     for (int i = 0; i < SINK_LANES; i++)
         rays[i] = lanes[p->lanes[i < p->count ? i : 0]].shadow.ray;
-    const uint32_t blocked = how == TRACE_EACH
-                                 ? accel_occluded_each(accel, rays, active)
-                                 : accel_occluded16(accel, rays, active, how == TRACE_TOGETHER);
-    ctx->shadow_rays += (uint64_t)p->count;
-    for (int i = 0; i < p->count; i++)
-        if (!(blocked >> i & 1))
-            vertex_add_light(ctx, lanes[p->lanes[i]].sample, &lanes[p->lanes[i]].shadow);
+    return accel_occluded16(accel, rays, (1u << p->count) - 1, together);
+}
+
+// Which of the shadow rays of the lanes listed are blocked. Those that run alone are traced after the
+// packets, all at once.
+static void trace_shadows(const struct world *w, const struct lane *lanes, const uint16_t *list,
+                          uint32_t count, bool first, bool *blocked) {
+    struct ray rays[MOST_LANES];
+    bool found[MOST_LANES];
+    uint16_t at[MOST_LANES]; // in the list
+    uint32_t alone = 0;
+    struct packet p;
+    for (uint32_t i = 0; i < count; i += (uint32_t)p.count) {
+        p = packet_at(w, list, count, i, first);
+        const bool same_way =
+            first && !accel_mixes_packets(w->accel) && run_together(lanes, &p);
+        const enum tracing how = tracing_of(w, &p, same_way);
+        const uint32_t bits =
+            how == TRACE_EACH ? 0 : blocked_together(w->accel, lanes, &p, how == TRACE_TOGETHER);
+        for (uint32_t k = 0; k < (uint32_t)p.count; k++) {
+            blocked[i + k] = bits >> k & 1;
+            if (how != TRACE_EACH)
+                continue;
+            rays[alone] = lanes[p.lanes[k]].shadow.ray;
+            at[alone++] = (uint16_t)(i + k);
+        }
+    }
+    if (alone)
+        accel_occluded_each(w->accel, rays, alone, found);
+    for (uint32_t k = 0; k < alone; k++)
+        blocked[at[k]] = found[k];
 }
 
 // The shadow rays of one vertex of the lanes listed. Packets depend on the lanes alone, never on a
 // clock.
 static void finish_shadows(struct trace_context *ctx, struct lane *lanes, const uint16_t *list,
                            uint32_t count, bool first) {
-    const struct world *w = ctx->world;
-    const bool mixes = accel_mixes_packets(w->accel);
-    struct packet p;
-    for (uint32_t i = 0; i < count; i += (uint32_t)p.count) {
-        p = packet_at(w, list, count, i, first);
-        if (!w->shadow_rays_may_pass)
-            finish_as_packet(ctx, lanes, &p,
-                             tracing_of(w, &p, first && !mixes && run_together(lanes, &p)));
-        else
-            for (int k = 0; k < p.count; k++)
-                vertex_finish_light(ctx, lanes[p.lanes[k]].sample, &lanes[p.lanes[k]].shadow);
+    bool blocked[MOST_LANES];
+    if (ctx->world->shadow_rays_may_pass) {
+        for (uint32_t i = 0; i < count; i++)
+            vertex_finish_light(ctx, lanes[list[i]].sample, &lanes[list[i]].shadow);
+        return;
     }
+    trace_shadows(ctx->world, lanes, list, count, first, blocked);
+    ctx->shadow_rays += count;
+    for (uint32_t i = 0; i < count; i++)
+        if (!blocked[i])
+            vertex_add_light(ctx, lanes[list[i]].sample, &lanes[list[i]].shadow);
 }
 
 // The next hits of a packet's lanes: the camera's rays together, later ones where that pays.
@@ -382,7 +403,8 @@ static void settle(struct trace_context *ctx, struct wave *w, bool first) {
         survivors += w->lanes[i].alive;
     }
     w->count = survivors;
-    finish_shadows(ctx, w->lanes, pending, tests, first);
+    if (tests)
+        finish_shadows(ctx, w->lanes, pending, tests, first);
 }
 
 // One vertex of every living lane, stage by stage.

@@ -42,8 +42,8 @@ void __real_accel_intersect16(const struct accel *, const struct ray *, uint32_t
 uint32_t __real_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 bool __wrap_accel_intersect(const struct accel *, const struct ray *, struct accel_hit *);
 bool __wrap_accel_occluded(const struct accel *, const struct ray *);
-uint32_t __real_accel_occluded_each(const struct accel *, const struct ray *, uint32_t);
-uint32_t __wrap_accel_occluded_each(const struct accel *, const struct ray *, uint32_t);
+void __real_accel_occluded_each(const struct accel *, const struct ray *, uint32_t, bool *);
+void __wrap_accel_occluded_each(const struct accel *, const struct ray *, uint32_t, bool *);
 void __wrap_accel_intersect16(const struct accel *, const struct ray *, uint32_t, bool, struct accel_hit *);
 uint32_t __wrap_accel_occluded16(const struct accel *, const struct ray *, uint32_t, bool);
 
@@ -65,9 +65,11 @@ static void record_packet(const struct ray *r, uint32_t active, bool shadow) {
             record(&r[i], shadow);
 }
 
-uint32_t __wrap_accel_occluded_each(const struct accel *a, const struct ray *r, uint32_t active) {
-    record_packet(r, active, true);
-    return __real_accel_occluded_each(a, r, active);
+void __wrap_accel_occluded_each(const struct accel *a, const struct ray *r, uint32_t count,
+                                bool *blocked) {
+    for (uint32_t i = 0; recording && i < count; i++)
+        record(&r[i], true);
+    __real_accel_occluded_each(a, r, count, blocked);
 }
 
 void __wrap_accel_intersect16(const struct accel *a, const struct ray *r, uint32_t active,
