@@ -16,9 +16,9 @@ void edit_session_help(void) {
         "             {\"curve\": \"cup.specular.f_A=lobe.csv\", \"settle\": true},\n"
         "             {\"reset\": \"cup\", \"light\": \"sun=0.5\"}]}\n"
         "  A step makes its changes, then `frames` pictures (1); with `settle` until they are exact.\n"
-        "  `write`: the last one goes to OUT.0001.exr, with the number of the step. `focus` freezes\n"
-        "  what is not edited (of all curves, one or two are edited at a time: between two pictures, or in\n"
-        "  turn), `terms` is the most coefficients a frame may change (0: all).\n");
+        "  `write`: the last one goes to OUT.0001.exr, with the number of the step. `focus`, which\n"
+        "  is true unless said, freezes what is not edited (of all curves, one or two are edited at a time:\n"
+        "  between two pictures, or in turn), `terms` is the most coefficients a frame may change (0: all).\n");
 }
 
 static bool write_numbered(const struct edit_session *s, size_t step, const float *frame) {
