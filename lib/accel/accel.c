@@ -289,22 +289,24 @@ bool accel_occluded(const struct accel *a, const struct ray *ray) {
 
 static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, int valid[ACCEL_PACKET],
                         struct RTCRay16 *p) {
-    const wide_int first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    const wide_mask traced = wide_mask_of(active);
-    struct accel_rays r;
-    few_packet_rays(rays, active, &r);
-    memcpy(valid, &traced, sizeof traced);
-    memcpy(p->org_x, &r.o.x, sizeof r.o.x);
-    memcpy(p->org_y, &r.o.y, sizeof r.o.y);
-    memcpy(p->org_z, &r.o.z, sizeof r.o.z);
-    memcpy(p->dir_x, &r.d.x, sizeof r.d.x);
-    memcpy(p->dir_y, &r.d.y, sizeof r.d.y);
-    memcpy(p->dir_z, &r.d.z, sizeof r.d.z);
-    memcpy(p->tnear, &r.tmin, sizeof r.tmin);
-    memcpy(p->tfar, &r.tmax, sizeof r.tmax);
+    for (int i = 0; i < ACCEL_PACKET; i += WIDE_LANES) {
+        const wide_mask traced = wide_mask_of(active >> i);
+        struct accel_rays r;
+        few_packet_rays(rays + i, active >> i, &r);
+        memcpy(valid + i, &traced, sizeof traced);
+        memcpy(p->org_x + i, &r.o.x, sizeof r.o.x);
+        memcpy(p->org_y + i, &r.o.y, sizeof r.o.y);
+        memcpy(p->org_z + i, &r.o.z, sizeof r.o.z);
+        memcpy(p->dir_x + i, &r.d.x, sizeof r.d.x);
+        memcpy(p->dir_y + i, &r.d.y, sizeof r.d.y);
+        memcpy(p->dir_z + i, &r.d.z, sizeof r.d.z);
+        memcpy(p->tnear + i, &r.tmin, sizeof r.tmin);
+        memcpy(p->tfar + i, &r.tmax, sizeof r.tmax);
+    }
     memset(p->time, 0, sizeof p->time);
     memset(p->mask, 0xff, sizeof p->mask);
-    memcpy(p->id, &first, sizeof first);
+    for (unsigned i = 0; i < ACCEL_PACKET; i++)
+        p->id[i] = i;
     memset(p->flags, 0, sizeof p->flags);
 }
 
@@ -347,11 +349,8 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
 
 uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
                           uint32_t active, bool coherent) {
-    if (a->few) {
-        struct accel_rays r;
-        few_packet_rays(rays, active, &r);
-        return few_occluded(a->few, &r);
-    }
+    if (a->few)
+        return few_packet_occluded(a->few, rays, active);
     _Alignas(64) int valid[ACCEL_PACKET];
     struct RTCRay16 p;
     packet_from(rays, active, valid, &p);

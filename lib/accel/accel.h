@@ -22,7 +22,7 @@ struct accel_hit {
 
 enum { ACCEL_PACKET = 16 };
 
-// A packet, lane by lane. A lane with tmax < tmin is not traced.
+// Rays of a packet, lane by lane. One with tmax < tmin is not traced.
 struct accel_rays {
     struct wide3 o, d;
     wide tmin, tmax;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of a few primitives: sixteen rays against every one of them.
+// Scenes of a few primitives: a ray a lane against every one of them.
 //
 // No tree to walk and no lane that waits for another: for some dozen triangles this is three to six
 // times as fast as any tree, whichever way the rays run. What a ray hits does not depend on the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A box around facets that follow one another: sixteen rays that all pass it need not look at them.
+// A box around facets that follow one another: rays that all pass it need not look at them.
 #pragma once
 
 #include "accel/accel.h"

@@ -24,7 +24,7 @@ static wide_double dot_double(struct double3 a, struct double3 b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// sphere_roots of scene/quadric.c, and which of them is taken. Eight rays in object space.
+// sphere_roots of scene/quadric.c, and which of them is taken. Rays of half the lanes, in object space.
 static wide_long hits_of_half(struct double3 o, struct double3 d, wide_double tmin,
                               wide_double tmax, wide_double *t) {
     const wide_double a = dot_double(d, d), b = dot_double(o, d), s = b / a;
@@ -47,9 +47,9 @@ static struct double3 half_of(struct wide3 v, int half) {
 
 uint32_t few_sphere_hits(const struct placed_quadric *q, const struct accel_rays *r, wide tmax,
                          wide *t) {
-    wide_double found[2];
+    wide_double found[WIDE_HALVES];
     uint32_t bits = 0;
-    for (int half = 0; half < 2; half++) {
+    for (int half = 0; half < WIDE_HALVES; half++) {
         struct double3 o = times(&q->to_object, half_of(r->o, half));
         o.x += q->to_object.m[0][3];
         o.y += q->to_object.m[1][3];
@@ -57,7 +57,7 @@ uint32_t few_sphere_hits(const struct placed_quadric *q, const struct accel_rays
         const struct double3 d = times(&q->to_object, half_of(r->d, half));
         bits |= wide_long_bits(hits_of_half(o, d, wide_half_to_double(r->tmin, half),
                                             wide_half_to_double(tmax, half), &found[half]))
-                << 8 * half;
+                << WIDE_HALF * half;
     }
     *t = wide_from_doubles(found[0], found[1]);
     return bits;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// placed_quadric_hit for a sphere and sixteen rays, operation by operation.
+// placed_quadric_hit for a sphere and a ray a lane, operation by operation.
 #pragma once
 
 #include "accel/accel.h"

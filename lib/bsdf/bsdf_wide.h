@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials that can be shaded sixteen points at once.
+// Materials that can be shaded WIDE_LANES points at once.
 //
-// A material that can names a kind (bsdf_type.widen): resolve, eval and sample of sixteen lanes, the
+// A material that can names a kind (bsdf_type.widen): resolve, eval and sample of all lanes, the
 // operations of those for one, lane by lane and with their bits (tests/render/wide.c). The lanes of
 // a call share the kind, not the material. Kinds reflect by lobes that are not delta, from the side
 // of the normal; who calls them mirrors directions for materials with two sides.
@@ -10,7 +10,7 @@
 #include "bsdf/bsdf.h"
 #include "math/wide_maps.h"
 
-// The points of sixteen lanes.
+// The points of all lanes.
 struct wide_points {
     const void *data[WIDE_LANES];        // wide_material.data of each
     struct texture_point at[WIDE_LANES]; // filled where the material is textured

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// diffuse.c for sixteen lanes.
+// diffuse.c for all lanes.
 #include "bsdf/diffuse.h"
 
 struct diffuse_lanes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughconductor.c for sixteen lanes: single scattering by facets whose roughness is not textured.
+// roughconductor.c for all lanes: single scattering by facets whose roughness is not textured.
 // A kind for each distribution, so that the lanes of a call share it.
 #include "bsdf/roughconductor.h"
 #include "math/wide_fresnel.h"

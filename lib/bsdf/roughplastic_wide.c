@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// roughplastic.c for sixteen lanes: single scattering by a coat that is not smooth. A kind for each
+// roughplastic.c for all lanes: single scattering by a coat that is not smooth. A kind for each
 // distribution, so that the lanes of a call share it.
 #include "bsdf/roughplastic.h"
 #include "math/wide_fresnel.h"

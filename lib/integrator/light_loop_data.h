@@ -6,7 +6,7 @@
 #include "integrator/wide_overlap.h"
 #include "integrator/wide_quotient.h"
 
-// A triangle for sixteen at a time: its nodes, centre (then the tolerance of
+// A triangle, for WIDE_LANES at a time: its nodes, centre (then the tolerance of
 // its shares) and parts.
 enum { LIGHT_CENTRE = OVERLAP_NODES, LIGHT_PARTS, LIGHT_ROWS };
 

@@ -51,7 +51,7 @@ static void add_point(const struct shading *s, struct angles *a, const double li
 
 // ---- triangles ----------------------------------------------------------------------------------
 
-// Sixteen triangles, with what all terms need of them.
+// WIDE_LANES triangles, with what all terms need of them.
 struct bundle {
     const struct arrival *list;
     uint32_t count;

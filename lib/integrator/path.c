@@ -322,7 +322,7 @@ static void shade_kind(const struct path *p, struct trace_context *ctx, struct w
     uint32_t done = 0;
     while (count - done >= least) {
         const uint32_t left = count - done;
-        const struct packet group = {list + done, left < SINK_LANES ? (int)left : SINK_LANES};
+        const struct packet group = {list + done, left < WIDE_LANES ? (int)left : WIDE_LANES};
         path_shade_wide(p, ctx, w->lanes, &group, hits, kind);
         done += (uint32_t)group.count;
     }

@@ -41,7 +41,7 @@ struct lane {
     struct shadow_test shadow;
 };
 
-// Up to sixteen lanes of a wave, by index.
+// Some lanes of a wave, SINK_LANES at most, by index.
 struct packet {
     const uint16_t *lanes;
     int count;
@@ -79,7 +79,7 @@ uint32_t path_sample_ahead(const struct path *p, const struct world *w, const st
                            const struct packet *packet, const struct accel_hit *hits,
                            struct light_ahead out[WIDE_LANES]);
 
-// One vertex of a packet's lanes, whose materials are of this kind: the same as one by one, with the
-// same bits. hits: by lane.
+// One vertex of a packet's lanes, WIDE_LANES at most, whose materials are of this kind: the same as
+// one by one, with the same bits. hits: by lane.
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
                      const struct packet *packet, const struct accel_hit *hits, uint32_t kind);

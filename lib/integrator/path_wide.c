@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// path.c's vertex for sixteen paths that met triangles whose materials are of one kind, stage by
+// path.c's vertex for WIDE_LANES paths that met triangles whose materials are of one kind, stage by
 // stage: the operations of vertex.c, lane by lane. Emission that is found, which few lanes need,
 // goes through the function for one.
 #include "integrator/path.h"

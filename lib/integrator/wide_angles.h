@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The angles of curves (curve/angles.h, signed as in curve/overlap.h) for sixteen directions at
+// The angles of curves (curve/angles.h, signed as in curve/overlap.h) for WIDE_LANES directions at
 // once, in single precision: to 1e-6 radians of the double ones.
 #pragma once
 

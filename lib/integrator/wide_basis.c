@@ -3,20 +3,21 @@
 
 #include "integrator/wide_strategy.h"
 
-enum { HALVES = 2, HALF_LANES = 8 };
+// Those of one half of the lanes.
+static const uint32_t halves[WIDE_HALVES] = {(1u << WIDE_HALF) - 1, WIDE_ALL & ~((1u << WIDE_HALF) - 1)};
 
 struct basis_lanes {
     const struct symbolic_object *object[WIDE_LANES];
     struct marks *to[WIDE_LANES]; // [CHAIN_WAYS]
     uint32_t distinct;            // lanes that do not repeat the first: each has a list of its own
-    struct directions8 wo[HALVES];
-    wide_double reach[HALVES][WIDE_STRATEGIES];
+    struct half_directions wo[WIDE_HALVES];
+    wide_double reach[WIDE_HALVES][WIDE_STRATEGIES];
 };
 
 _Static_assert(sizeof(struct basis_lanes) <= sizeof(struct wide_closures), "it has room there");
 
 static bool axis_fits(const struct form_slot *s) {
-    return s->gamma.kind == GAMMA_NONE || gamma8_fits(s->gamma.kind);
+    return s->gamma.kind == GAMMA_NONE || half_gamma_fits(s->gamma.kind);
 }
 
 bool wide_basis_fits(const struct symbolic_object *o) {
@@ -40,8 +41,8 @@ static uint32_t alike(const struct basis_lanes *c, uint32_t lanes) {
     return same & lanes;
 }
 
-static struct directions8 half_of(const struct wide3 *w, int half) {
-    return directions8_of(wide_half_to_double(w->x, half), wide_half_to_double(w->y, half),
+static struct half_directions half_of(const struct wide3 *w, int half) {
+    return half_directions_of(wide_half_to_double(w->x, half), wide_half_to_double(w->y, half),
                           wide_half_to_double(w->z, half));
 }
 
@@ -55,9 +56,9 @@ static void resolve(const struct wide_points *points, const struct wide3 *wo,
         c->object[i] = chain->basis;
         c->to[i] = chain->first;
     }
-    for (int h = 0; h < HALVES; h++) {
+    for (int h = 0; h < WIDE_HALVES; h++) {
         c->wo[h] = half_of(wo, h);
-        for (uint32_t left = 0xffu << h * HALF_LANES, same; left; left &= ~same) {
+        for (uint32_t left = halves[h], same; left; left &= ~same) {
             const struct symbolic_object *o = c->object[__builtin_ctz(left)];
             wide_double reach[WIDE_STRATEGIES];
             same = alike(c, left);
@@ -76,7 +77,7 @@ struct axes {
     wide_double value[2];
 };
 
-static struct axes axis_at(const struct form *f, const struct form_slot *slot, struct angles8 *a) {
+static struct axes axis_at(const struct form *f, const struct form_slot *slot, struct half_angles *a) {
     const wide_double none = {0};
     struct axes x;
     x.index = (wide_long){0};
@@ -86,9 +87,9 @@ static struct axes axis_at(const struct form *f, const struct form_slot *slot, s
     if (slot->gamma.kind == GAMMA_NONE)
         return x;
     const struct basis *b = &f->curve[slot->curve].f[0].table->basis;
-    const wide_double gamma = gamma8_at(slot->gamma.kind, a);
+    const wide_double gamma = half_gamma_at(slot->gamma.kind, a);
     const double end = b->knots[basis_intervals(b)] * (1 + 1e-6);
-    x.index = basis8_interval(b, gamma);
+    x.index = half_interval(b, gamma);
     x.count = ((gamma >= 0) & (gamma <= end)) & (b->kind == BASIS_BOX ? 1 : 2);
     if (b->kind == BASIS_BOX)
         return x;
@@ -104,7 +105,7 @@ static wide_double at_least(wide_double cosine) {
 }
 
 // quotient_cos, the same for all channels
-static wide_double quotient(const struct quotient *q, const struct angles8 *a) {
+static wide_double quotient(const struct quotient *q, const struct half_angles *a) {
     if (q->kind == QUOTIENT_ONE)
         return a->wi.z;
     const wide_double i = at_least(a->wi.z), o = at_least(a->wo.z), s = 2 * a->cos_h / a->cos_d;
@@ -112,16 +113,16 @@ static wide_double quotient(const struct quotient *q, const struct angles8 *a) {
 }
 
 // A term at some directions.
-struct term8 {
+struct half_term {
     uint32_t first, columns;
     spectrum texture;
     struct axes x, y;
     wide_double quotient;
 };
 
-static struct term8 term_at(const struct symbolic_object *o, uint32_t term, struct angles8 *a) {
+static struct half_term term_at(const struct symbolic_object *o, uint32_t term, struct half_angles *a) {
     const struct form_term *t = &o->form->term[term];
-    struct term8 at;
+    struct half_term at;
     at.first = o->first[term];
     at.columns = symbolic_bins(o->form, term, SLOT_B);
     at.texture = o->texture[term] ? o->texture[term]->value : spectrum_grey(1);
@@ -131,7 +132,7 @@ static struct term8 term_at(const struct symbolic_object *o, uint32_t term, stru
     return at;
 }
 
-static void add_marks(const struct term8 *t, int i, float scale, struct marks *m) {
+static void add_marks(const struct half_term *t, int i, float scale, struct marks *m) {
     const float q = (float)t->quotient[i];
     const spectrum f = spectrum_clamp(spectrum_rgb(q, q, q), 0, 1e30f);
     const spectrum weight = t->texture * f * scale;
@@ -147,27 +148,27 @@ static void add_marks(const struct term8 *t, int i, float scale, struct marks *m
 // Leaves the marks of directions in the lists of lanes of one object and one half; returns the
 // densities of drawing them.
 static wide_double mark(const struct basis_lanes *c, int half, uint32_t lanes,
-                        struct directions8 wi, enum chain_way way) {
+                        struct half_directions wi, enum chain_way way) {
     const struct symbolic_object *o = c->object[__builtin_ctz(lanes)];
-    struct angles8 a = angles8_between(c->wo[half], wi);
+    struct half_angles a = half_angles_between(c->wo[half], wi);
     wide_double pdf = wide_strategy_pdf_sa(&o->sampler, c->reach[half], &a);
     float round[WIDE_LANES];
     pdf = wide_double_min(pdf, wide_double_of(1e30));
-    for (int i = 0; i < HALF_LANES; i++)
+    for (int i = 0; i < WIDE_HALF; i++)
         round[i] = (float)pdf[i];
     for (uint32_t left = lanes; left; left &= left - 1)
         c->to[__builtin_ctz(left)][way].count = 0;
     for (uint32_t t = 0; t < o->form->terms; t++) {
-        const struct term8 at = term_at(o, t, &a);
+        const struct half_term at = term_at(o, t, &a);
         for (uint32_t left = lanes; left; left &= left - 1) {
-            const int lane = __builtin_ctz(left), i = lane % HALF_LANES;
+            const int lane = __builtin_ctz(left), i = lane % WIDE_HALF;
             if (round[i] > 0)
                 add_marks(&at, i, 1 / round[i], &c->to[lane][way]);
         }
     }
     for (uint32_t left = lanes; left; left &= left - 1)
         if (c->to[__builtin_ctz(left)][way].count == 0)
-            pdf[__builtin_ctz(left) % HALF_LANES] = 0;
+            pdf[__builtin_ctz(left) % WIDE_HALF] = 0;
     return pdf;
 }
 
@@ -176,9 +177,9 @@ static wide_double mark(const struct basis_lanes *c, int half, uint32_t lanes,
 __attribute__((noinline)) static wide mark_all(const struct basis_lanes *c, const struct wide3 *wi,
                                                enum chain_way way) {
     const uint32_t above = c->distinct & wide_bits(wi->z > 0);
-    wide_double pdf[HALVES] = {{0}, {0}};
-    for (int h = 0; h < HALVES; h++)
-        for (uint32_t left = above & 0xffu << h * HALF_LANES, same; left; left &= ~same) {
+    wide_double pdf[WIDE_HALVES] = {{0}, {0}};
+    for (int h = 0; h < WIDE_HALVES; h++)
+        for (uint32_t left = above & halves[h], same; left; left &= ~same) {
             same = alike(c, left);
             pdf[h] = wide_double_select(wide_half_mask(same, h),
                                         mark(c, h, same, half_of(wi, h), way), pdf[h]);
@@ -192,17 +193,17 @@ static struct wide3 eval(const struct wide_closures *closures, const struct wide
     return (struct wide3){*pdf_sa, *pdf_sa, *pdf_sa};
 }
 
-static struct directions8 sample_half(const struct basis_lanes *c, int h, wide u1, const wide u2[2]) {
+static struct half_directions sample_half(const struct basis_lanes *c, int h, wide u1, const wide u2[2]) {
     const wide_double left_over = wide_half_to_double(u1, h);
     const wide_double u = wide_half_to_double(u2[0], h), v = wide_half_to_double(u2[1], h);
-    struct directions8 wi = {{0}, {0}, {0}};
-    for (uint32_t left = 0xffu << h * HALF_LANES, same; left; left &= ~same) {
+    struct half_directions wi = {{0}, {0}, {0}};
+    for (uint32_t left = halves[h], same; left; left &= ~same) {
         const struct symbolic_object *o = c->object[__builtin_ctz(left)];
         same = alike(c, left);
         const wide_long here = wide_half_mask(same, h);
-        const struct directions8 w =
+        const struct half_directions w =
             wide_strategy_sample(&o->sampler, c->reach[h], c->wo[h], left_over, u, v);
-        wi = (struct directions8){wide_double_select(here, w.x, wi.x),
+        wi = (struct half_directions){wide_double_select(here, w.x, wi.x),
                                   wide_double_select(here, w.y, wi.y),
                                   wide_double_select(here, w.z, wi.z)};
     }
@@ -212,7 +213,7 @@ static struct directions8 sample_half(const struct basis_lanes *c, int h, wide u
 static wide_mask sample(const struct wide_closures *closures, wide u1, const wide u2[2],
                         struct wide_samples *s) {
     const struct basis_lanes *c = (const void *)closures;
-    const struct directions8 a = sample_half(c, 0, u1, u2), b = sample_half(c, 1, u1, u2);
+    const struct half_directions a = sample_half(c, 0, u1, u2), b = sample_half(c, 1, u1, u2);
     s->wi = (struct wide3){wide_from_doubles(a.x, b.x), wide_from_doubles(a.y, b.y),
                            wide_from_doubles(a.z, b.z)};
     s->pdf_sa = mark_all(c, &s->wi, CHAIN_PATH);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is seen first answers with a basis (symbolic.h): sixteen points at once, with the bits of
+// What is seen first answers with a basis (symbolic.h): WIDE_LANES points at once, with the bits of
 // symbolic.c's closure for one. For objects without textures whose terms are simple enough; the
 // others are shaded one by one.
 #pragma once

@@ -12,24 +12,24 @@ static const float MOST_BEND = 0.12f;
 static const int parts[FIT_COARSE][3] = {{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}};
 
 // Barycentric coordinates of corners 1 and 2 at the corners of the fine parts.
-static const wide b1[3] = {
+static const float b1[3][FIT_FINE] = {
     {0, 0.5, 0, 0.25, 1, 0.5, 0.5, 0.75, 0, 0, 0.5, 0, 0.5, 0.5, 0, 0.5},
     {0.25, 0.25, 0, 0.25, 0.75, 0.5, 0.75, 0.5, 0, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25, 0.25},
     {0, 0.25, 0.25, 0, 0.75, 0.75, 0.5, 0.75, 0.25, 0, 0.25, 0.25, 0.25, 0.5, 0.25, 0.25},
 };
-static const wide b2[3] = {
+static const float b2[3][FIT_FINE] = {
     {0, 0, 0.5, 0, 0, 0.5, 0, 0.25, 1, 0.5, 0.5, 0.75, 0, 0.5, 0.5, 0.25},
     {0, 0.25, 0.25, 0.25, 0.25, 0.25, 0, 0.25, 0.75, 0.5, 0.75, 0.5, 0.25, 0.5, 0.25, 0.5},
     {0.25, 0, 0.25, 0.25, 0, 0.25, 0.25, 0, 0.75, 0.75, 0.5, 0.75, 0.25, 0.25, 0.5, 0.25},
 };
 
 // Nodes halfway between which the corners of the fine parts lie.
-static const wide_int one[3] = {
+static const int one[3][FIT_FINE] = {
     {0, 3, 5, 0, 1, 4, 3, 1, 2, 5, 4, 2, 3, 4, 5, 3},
     {0, 3, 5, 3, 1, 4, 3, 4, 2, 5, 4, 5, 3, 4, 5, 4},
     {5, 0, 3, 5, 3, 1, 4, 3, 4, 2, 5, 4, 5, 3, 4, 5},
 };
-static const wide_int other[3] = {
+static const int other[3][FIT_FINE] = {
     {0, 3, 5, 3, 1, 4, 3, 4, 2, 5, 4, 5, 3, 4, 5, 4},
     {3, 5, 0, 5, 4, 3, 1, 3, 5, 4, 2, 4, 4, 5, 3, 5},
     {0, 3, 5, 0, 1, 4, 3, 1, 2, 5, 4, 2, 3, 4, 5, 3},
@@ -103,36 +103,39 @@ void wide_fit_make(struct wide_fit *f, const struct wide_axis *a, const wide gam
     }
 }
 
-// The quadratic through the nodes at the corners of the fine parts.
-static void bent_corners(const float g[OVERLAP_NODES], float shift, wide out[3]) {
+// The quadratic through the nodes at the corners of the fine parts from `first` on.
+static void bent_corners(const float g[OVERLAP_NODES], float shift, int first, wide out[3]) {
     const float c3 = 2 * (g[1] + g[0]) - 4 * g[3], c5 = 2 * (g[2] + g[0]) - 4 * g[5];
     const float c1 = g[1] - g[0] - c3, c2 = g[2] - g[0] - c5;
     const float c4 = 4 * (g[4] - g[0] - 0.5f * (c1 + c2)) - c3 - c5;
-    for (int i = 0; i < 3; i++)
-        out[i] = g[0] + b1[i] * (c1 + c3 * b1[i] + c4 * b2[i]) + b2[i] * (c2 + c5 * b2[i]) +
-                 shift * 0.0625f;
+    for (int i = 0; i < 3; i++) {
+        const wide x = wide_load(b1[i] + first), y = wide_load(b2[i] + first);
+        out[i] = g[0] + x * (c1 + c3 * x + c4 * y) + y * (c2 + c5 * y) + shift * 0.0625f;
+    }
 }
 
-static void straight_corners(const float g[OVERLAP_NODES], float shift, wide out[3]) {
+static void straight_corners(const float g[OVERLAP_NODES], float shift, int first, wide out[3]) {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < WIDE_LANES; k++)
-            out[i][k] = 0.5f * (g[one[i][k]] + g[other[i][k]]) + shift * 0.25f;
+            out[i][k] = 0.5f * (g[one[i][first + k]] + g[other[i][first + k]]) + shift * 0.25f;
 }
 
-void wide_fit_fine(const struct wide_fit *f, const struct wide_axis *a, uint32_t lane, wide weight,
-                   bool straight, struct part out[FIT_FINE]) {
+void wide_fit_fine(const struct wide_fit *f, const struct wide_axis *a, uint32_t lane,
+                   const float weight[FIT_FINE], bool straight, struct part out[FIT_FINE]) {
     float g[OVERLAP_NODES], shift = 0;
-    struct part *to[WIDE_LANES];
-    wide corner[3];
     for (int i = 0; i < OVERLAP_NODES; i++)
         g[i] = f->turned >> lane & 1 ? -f->gamma[i][lane] : f->gamma[i][lane];
     for (int i = 0; i < 3; i++)
         shift += (g[3 + i] - 0.5f * (g[i] + g[(i + 1) % 3])) * (1.0f / 3);
-    if (straight)
-        straight_corners(g, shift, corner);
-    else
-        bent_corners(g, shift, corner);
-    for (int i = 0; i < WIDE_LANES; i++)
-        to[i] = &out[i];
-    parts_store(a, corner[0], corner[1], corner[2], weight, to);
+    for (int first = 0; first < FIT_FINE; first += WIDE_LANES) {
+        struct part *to[WIDE_LANES];
+        wide corner[3];
+        if (straight)
+            straight_corners(g, shift, first, corner);
+        else
+            bent_corners(g, shift, first, corner);
+        for (int i = 0; i < WIDE_LANES; i++)
+            to[i] = &out[first + i];
+        parts_store(a, corner[0], corner[1], corner[2], wide_load(weight + first), to);
+    }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How gamma runs over sixteen triangles: each as four parts over which it is linear, as sixteen over
+// How gamma runs over WIDE_LANES triangles: each as four parts over which it is linear, as sixteen over
 // which a quadratic through the nodes is, or too curved for either. Where gamma is
 // taken to be linear the corners are moved together, so that its mean over the part stays what it is.
 #pragma once
@@ -29,5 +29,5 @@ void wide_fit_make(struct wide_fit *f, const struct wide_axis *a, const wide gam
                    const wide part[FIT_COARSE], wide tolerance);
 
 // One triangle as sixteen parts; straight: as they lie inside the four.
-void wide_fit_fine(const struct wide_fit *f, const struct wide_axis *a, uint32_t lane, wide weight,
-                   bool straight, struct part out[FIT_FINE]);
+void wide_fit_fine(const struct wide_fit *f, const struct wide_axis *a, uint32_t lane,
+                   const float weight[FIT_FINE], bool straight, struct part out[FIT_FINE]);

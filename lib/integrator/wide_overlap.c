@@ -22,12 +22,12 @@ void wide_overlap_fit(const struct wide_overlap *o, const struct wide_nodes *n,
 // ---- to the sums --------------------------------------------------------------------------------
 
 // Adds share[i] * light[c] to sum[3 i + c].
-static inline void add_eight(double *sum, const wide_double light[OVERLAP_CHANNELS], wide_double share) {
+static inline void add_half(double *sum, const wide_double light[OVERLAP_CHANNELS], wide_double share) {
     wide_double old[OVERLAP_CHANNELS];
     memcpy(old, sum, sizeof old);
-    old[0] += light[0] * __builtin_shufflevector(share, share, 0, 0, 0, 1, 1, 1, 2, 2);
-    old[1] += light[1] * __builtin_shufflevector(share, share, 2, 3, 3, 3, 4, 4, 4, 5);
-    old[2] += light[2] * __builtin_shufflevector(share, share, 5, 5, 6, 6, 6, 7, 7, 7);
+    old[0] += light[0] * __builtin_shufflevector(share, share, WIDE_THRICE_0);
+    old[1] += light[1] * __builtin_shufflevector(share, share, WIDE_THRICE_1);
+    old[2] += light[2] * __builtin_shufflevector(share, share, WIDE_THRICE_2);
     memcpy(sum, old, sizeof old);
 }
 
@@ -37,16 +37,19 @@ struct lit {
 };
 
 static struct lit lit_of(const double l[OVERLAP_CHANNELS]) {
-    return (struct lit){{{l[0], l[1], l[2], l[0], l[1], l[2], l[0], l[1]},
-                         {l[2], l[0], l[1], l[2], l[0], l[1], l[2], l[0]},
-                         {l[1], l[2], l[0], l[1], l[2], l[0], l[1], l[2]}}};
+    struct lit lit;
+    double all[OVERLAP_CHANNELS * WIDE_HALF];
+    for (int i = 0; i < OVERLAP_CHANNELS * WIDE_HALF; i++)
+        all[i] = l[i % OVERLAP_CHANNELS];
+    memcpy(lit.pattern, all, sizeof all);
+    return lit;
 }
 
 // Shares of functions from `first` on, of which no more than `count` are not 0.
 static inline void add_shares(double *sums, size_t first, uint32_t count, const struct lit *l, wide share) {
-    add_eight(sums + first * OVERLAP_CHANNELS, l->pattern, wide_half_to_double(share, 0));
-    if (count > WIDE_LANES / 2)
-        add_eight(sums + (first + WIDE_LANES / 2) * OVERLAP_CHANNELS, l->pattern,
+    add_half(sums + first * OVERLAP_CHANNELS, l->pattern, wide_half_to_double(share, 0));
+    if (count > WIDE_HALF)
+        add_half(sums + (first + WIDE_HALF) * OVERLAP_CHANNELS, l->pattern,
                   wide_half_to_double(share, 1));
 }
 
@@ -57,7 +60,7 @@ static struct part_run run_of(const struct wide_overlap *o, uint32_t x, const st
                               const struct wide_nodes *n, uint32_t lane, bool fine,
                               struct part room[FIT_FINE]) {
     struct part_run r = {f->part[lane], FIT_COARSE, f->first[lane], f->count[lane], f->straddles >> lane & 1};
-    wide weight;
+    float weight[FIT_FINE];
     if (!fine)
         return r;
     for (int i = 0; i < FIT_FINE; i++)
@@ -100,7 +103,7 @@ static void find_rows(const struct wide_axis *a, const struct part_run *r, uint3
     }
 }
 
-// Calls `add` with the products of shares, [row][16 columns].
+// Calls `add` with the products of shares, [row][WIDE_LANES columns].
 static void find_products(struct wide_overlap *o, const struct part_run *a, const struct part_run *b,
                           const struct lit *l, void (*add)(struct wide_overlap *o, size_t at, uint32_t count,
                                                            const struct lit *l, wide product)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shares of triangles in the functions of curves (curve/overlap.h): sixteen triangles are looked at
-// together (wide_fit.h), then dealt to sixteen functions at a time (wide_part.h). The few over which an
+// Shares of triangles in the functions of curves (curve/overlap.h): WIDE_LANES triangles are looked at
+// together (wide_fit.h), then dealt to as many functions at a time (wide_part.h). The few over which an
 // angle bends too much, near its pole, are split (wide_split.h).
 #pragma once
 

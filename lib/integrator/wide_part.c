@@ -69,10 +69,9 @@ static wide up_to_boxes(const struct wide_axis *a, const struct part_run *r, uin
 
 // Numbers that should ascend, but for rounding: each the largest so far.
 static wide ascending(wide a) {
-    a = wide_max(a, __builtin_shufflevector(a, a, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14));
-    a = wide_max(a, __builtin_shufflevector(a, a, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13));
-    a = wide_max(a, __builtin_shufflevector(a, a, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11));
-    return wide_max(a, __builtin_shufflevector(a, a, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7));
+    for (int step = 1; step < WIDE_LANES; step *= 2)
+        a = wide_max(a, wide_before(a, step));
+    return a;
 }
 
 // Likewise of hats, but for the last lane.
@@ -83,13 +82,11 @@ static wide up_to_hats(const struct wide_axis *a, const struct part_run *r, uint
         sum += r->part[i].weight * integral_below(&r->part[i], t);
     for (uint32_t i = 0; i < r->parts && r->straddles; i++)
         sum += r->part[i].weight * integral_below(&r->part[i], -t);
-    const wide next =
-        __builtin_shufflevector(sum, sum, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 15);
-    return (next - sum) * wide_load(a->inverse + r->first + at);
+    return (wide_next(sum) - sum) * wide_load(a->inverse + r->first + at);
 }
 
 wide part_shares(const struct wide_axis *a, const struct part_run *r, uint32_t at, float *done) {
-    const wide_int lane = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const wide_int lane = {WIDE_LOWER, WIDE_UPPER};
     float all = 0;
     for (uint32_t i = 0; i < r->parts; i++)
         all += r->part[i].inside;
@@ -97,13 +94,12 @@ wide part_shares(const struct wide_axis *a, const struct part_run *r, uint32_t a
     up = wide_max(wide_min(up, wide_of(all)), wide_of(*done));
     wide_mask last = lane + (int32_t)at >= (int32_t)r->count - 1;
     if (a->hat) { // the last lane is not known: nothing in it
-        up = ascending(wide_select(lane == 15, wide_of(*done), up));
-        last &= lane != 15;
+        up = ascending(wide_select(lane == WIDE_LANES - 1, wide_of(*done), up));
+        last &= lane != WIDE_LANES - 1;
     }
     up = wide_select(last, wide_of(all), up);
-    wide before =
-        __builtin_shufflevector(up, up, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14);
+    wide before = wide_before(up, 1);
     before[0] = *done;
-    *done = up[14 + !a->hat];
+    *done = up[WIDE_LANES - 2 + !a->hat];
     return wide_max(up - before, wide_of(0));
 }

@@ -2,7 +2,7 @@
 // Parts of a triangle over which gamma is linear (curve/overlap.h), and what of them the functions of
 // a basis have. A function's share is the difference of what lies up to its upper end and up to that
 // of the one before: of F itself for boxes, of F's mean over the interval above its node for hats.
-// Sixteen functions are asked for at once: few parts then cost little, however many functions they touch.
+// WIDE_LANES functions are asked for at once: few parts then cost little, however many functions they touch.
 #pragma once
 
 #include "curve/overlap.h"

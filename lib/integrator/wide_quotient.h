@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quotients times cosine (curve/quotient.h) for sixteen directions at once, in single precision: to
+// Quotients times cosine (curve/quotient.h) for a direction a lane, in single precision: to
 // 1e-5 of the double ones.
 #pragma once
 

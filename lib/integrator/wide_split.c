@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "integrator/wide_split.h"
 
+#include <string.h>
+
 #include "integrator/wide_angles.h"
 
-enum { FURTHER = 9, POINTS = OVERLAP_NODES + FURTHER };
+// ROOM: for all points, and for all parts of the children, in whole vectors.
+enum { FURTHER = 9, POINTS = OVERLAP_NODES + FURTHER, ROOM = FIT_COARSE * FIT_COARSE };
 
 // Nodes of a triangle between which those of its children lie, then the children's nodes.
 static const int between[FURTHER][2] = {{0, 3}, {3, 1}, {1, 4}, {4, 2}, {2, 5},
@@ -34,34 +37,44 @@ static wide length_of(struct wide3 a) {
     return wide_sqrt(wide_dot(a, a));
 }
 
-// All points of the children: nodes of the triangle, then further ones.
-static struct wide3 points_of(const struct patch *t) {
+// Points of the children from `first` on: nodes of the triangle, then further ones.
+static struct wide3 points_of(const struct patch *t, int first) {
     struct wide3 p = {{0}, {0}, {0}}, q = p;
-    for (int i = 0; i < POINTS; i++) {
+    for (int i = first; i < POINTS && i < first + WIDE_LANES; i++) {
         const int a = i < OVERLAP_NODES ? i : between[i - OVERLAP_NODES][0];
         const int b = i < OVERLAP_NODES ? i : between[i - OVERLAP_NODES][1];
-        wide3_set_lane(&p, i, wide3_lane(&t->at.node[a], 0));
-        wide3_set_lane(&q, i, wide3_lane(&t->at.node[b], 0));
+        wide3_set_lane(&p, i - first, wide3_lane(&t->at.node[a], 0));
+        wide3_set_lane(&q, i - first, wide3_lane(&t->at.node[b], 0));
     }
     p = wide3_add(p, q);
     return wide3_scale(1 / wide_max(length_of(p), wide_of(1e-30f)), p);
 }
 
-// Twice the area of the children's parts, as of plane triangles.
-static wide areas_of(const struct wide3 *points) {
-    struct wide3 corner[3];
+// Twice the area of the children's parts from `first` on, as of plane triangles.
+static wide areas_of(const vec3 points[ROOM], int first) {
+    struct wide3 corner[3] = {{{0}, {0}, {0}}};
     for (int i = 0; i < WIDE_LANES; i++)
         for (int k = 0; k < 3; k++)
-            wide3_set_lane(&corner[k], i, wide3_lane(points, nodes[i / 4][parts[i % 4][k]]));
+            wide3_set_lane(&corner[k], i, points[nodes[(first + i) / 4][parts[i % 4][k]]]);
     return length_of(wide_cross(wide3_sub(corner[1], corner[0]), wide3_sub(corner[2], corner[0])));
 }
 
 static void split(const struct wide_overlap *o, uint32_t axis, const struct patch *t,
                   struct patch child[FIT_COARSE]) {
-    const struct wide3 points = points_of(t);
-    const wide area = areas_of(&points);
     const struct direction wo = {o->scalar.wo[0], o->scalar.wo[1], o->scalar.wo[2]};
-    const wide gamma = wide_gamma(&o->axis[axis].axis->gamma, wo, &points);
+    vec3 points[ROOM];
+    float area[ROOM], gamma[ROOM];
+    for (int first = 0; first < ROOM; first += WIDE_LANES) {
+        const struct wide3 p = points_of(t, first);
+        const wide g = wide_gamma(&o->axis[axis].axis->gamma, wo, &p);
+        memcpy(gamma + first, &g, sizeof g);
+        for (int i = 0; i < WIDE_LANES; i++)
+            points[first + i] = wide3_lane(&p, i);
+    }
+    for (int first = 0; first < ROOM; first += WIDE_LANES) {
+        const wide a = areas_of(points, first);
+        memcpy(area + first, &a, sizeof a);
+    }
     for (int c = 0; c < FIT_COARSE; c++) {
         const float all = area[4 * c] + area[4 * c + 1] + area[4 * c + 2] + area[4 * c + 3];
         child[c].share = t->share * t->at.part[c][0];
@@ -69,7 +82,7 @@ static void split(const struct wide_overlap *o, uint32_t axis, const struct patc
             child[c].at.part[i] = wide_of(all > 0 ? area[4 * c + i] / all : 0.25f);
         for (int i = 0; i < OVERLAP_NODES; i++) {
             const int n = nodes[c][i];
-            child[c].at.node[i] = wide3_of(wide3_lane(&points, n));
+            child[c].at.node[i] = wide3_of(points[n]);
             child[c].gamma[i] = n < OVERLAP_NODES ? t->gamma[n] : wide_of(gamma[n]);
         }
     }
@@ -80,7 +93,7 @@ static void add_leaf(struct wide_overlap *o, uint32_t axis, const struct patch *
     struct part fine[FIT_FINE];
     struct part_run r = {f->part[0], FIT_COARSE, f->first[0], f->count[0], f->straddles & 1};
     if (f->finer & 1) {
-        wide weight;
+        float weight[FIT_FINE];
         for (int i = 0; i < FIT_FINE; i++)
             weight[i] = 0.25f * t->at.part[i / 4][0] * t->share;
         wide_fit_fine(f, &o->axis[axis], 0, weight, false, fine);

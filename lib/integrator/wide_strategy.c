@@ -21,7 +21,7 @@ static wide_long whole(wide_double place, int64_t n) {
     return __builtin_convertvector(wide_double_min(some, wide_double_of((double)(n - 1))), wide_long);
 }
 
-wide_long basis8_interval(const struct basis *b, wide_double gamma) {
+wide_long half_interval(const struct basis *b, wide_double gamma) {
     const int64_t n = basis_intervals(b);
     if (b->spacing == SPACING_ANY)
         return bisect(b->knots, n, gamma);
@@ -44,7 +44,7 @@ static bool fits(const struct curve_strategy *c) {
     case STRATEGY_POLAR:
         return m->basis && m->level && m->gamma.kind == GAMMA_THETA_H && !c->second.basis;
     case STRATEGY_MIRROR:
-    case STRATEGY_DIFFERENCE: return m->basis && m->level && gamma8_fits(m->gamma.kind);
+    case STRATEGY_DIFFERENCE: return m->basis && m->level && half_gamma_fits(m->gamma.kind);
     default: return false;
     }
 }
@@ -67,7 +67,7 @@ static wide_double cdf_at(const struct curve_marginal *m, wide_double x) {
     return wide_double_min(wide_double_gather(m->cdf, i) + ends * part * width, none + 1);
 }
 
-void wide_strategy_reach(const struct bin_sampler *s, struct directions8 wo,
+void wide_strategy_reach(const struct bin_sampler *s, struct half_directions wo,
                          wide_double reach[WIDE_STRATEGIES]) {
     const wide_double one = wide_double_of(1);
     const wide_double sine = wide_double_min(wide_double_sqrt(wo.x * wo.x + wo.y * wo.y), one);
@@ -77,14 +77,14 @@ void wide_strategy_reach(const struct bin_sampler *s, struct directions8 wo,
                        : one;
 }
 
-static wide_double marginal_pdf(const struct curve_marginal *m, struct angles8 *a) {
-    const wide_double gamma = gamma8_at(m->gamma.kind, a), none = {0};
-    const wide_long i = basis8_interval(m->basis, gamma);
+static wide_double marginal_pdf(const struct curve_marginal *m, struct half_angles *a) {
+    const wide_double gamma = half_gamma_at(m->gamma.kind, a), none = {0};
+    const wide_long i = half_interval(m->basis, gamma);
     return wide_double_select(gamma > CURVE_END * (1 + 1e-12), none,
                               wide_double_gather(&m->ends[0][0], 2 * i));
 }
 
-static wide_double polar_pdf(const struct curve_strategy *c, struct angles8 *a) {
+static wide_double polar_pdf(const struct curve_strategy *c, struct half_angles *a) {
     const wide_double none = {0}, inv = 1 / a->length, cos_h = (a->wi.z + a->wo.z) * inv;
     const wide_double p = marginal_pdf(&c->first, a) * (1 / CURVE_END), h = p * 0.5 * a->cos_h;
     const wide_double pdf = wide_double_min(0.5 * h / (0.5 * a->length),
@@ -92,7 +92,7 @@ static wide_double polar_pdf(const struct curve_strategy *c, struct angles8 *a) 
     return wide_double_select(a->length > 0, pdf, none);
 }
 
-static wide_double strategy_pdf(const struct curve_strategy *c, struct angles8 *a) {
+static wide_double strategy_pdf(const struct curve_strategy *c, struct half_angles *a) {
     switch (c->kind) {
     case STRATEGY_COSINE: return a->wi.z / M_PI;
     case STRATEGY_POLAR: return polar_pdf(c, a);
@@ -101,7 +101,7 @@ static wide_double strategy_pdf(const struct curve_strategy *c, struct angles8 *
 }
 
 wide_double wide_strategy_pdf_sa(const struct bin_sampler *s,
-                                 const wide_double reach[WIDE_STRATEGIES], struct angles8 *a) {
+                                 const wide_double reach[WIDE_STRATEGIES], struct half_angles *a) {
     wide_double sum = {0};
     for (uint32_t i = 0; i < s->count; i++)
         sum += s->strategy[i].share * strategy_pdf(&s->strategy[i], a) / reach[i];
@@ -134,24 +134,24 @@ struct azimuth {
 
 static struct azimuth azimuth_of(wide_double phi) {
     struct azimuth a = {{0}, {0}};
-    for (int i = 0; i < 8; i++) {
+    for (int i = 0; i < WIDE_HALF; i++) {
         a.sine[i] = sin(phi[i]);
         a.cosine[i] = cos(phi[i]);
     }
     return a;
 }
 
-static struct directions8 around_normal(wide_double x, struct azimuth phi) {
+static struct half_directions around_normal(wide_double x, struct azimuth phi) {
     const wide_double s = wide_double_sqrt(x);
-    return (struct directions8){s * phi.cosine, s * phi.sine, wide_double_sqrt(1 - x)};
+    return (struct half_directions){s * phi.cosine, s * phi.sine, wide_double_sqrt(1 - x)};
 }
 
-static wide_double dot8(struct directions8 a, struct directions8 b) {
+static wide_double half_dot(struct half_directions a, struct half_directions b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-static struct directions8 select8(wide_long m, struct directions8 a, struct directions8 b) {
-    return (struct directions8){wide_double_select(m, a.x, b.x), wide_double_select(m, a.y, b.y),
+static struct half_directions half_select(wide_long m, struct half_directions a, struct half_directions b) {
+    return (struct half_directions){wide_double_select(m, a.x, b.x), wide_double_select(m, a.y, b.y),
                                 wide_double_select(m, a.z, b.z)};
 }
 
@@ -168,37 +168,37 @@ static struct quarter quarter_of(wide_double v) {
     return q;
 }
 
-static struct directions8 polar_sample(const struct curve_strategy *s, struct directions8 wo,
+static struct half_directions polar_sample(const struct curve_strategy *s, struct half_directions wo,
                                        wide_double left, wide_double u, wide_double v,
                                        struct azimuth phi) {
     const struct quarter q = quarter_of(v);
     const wide_double none = {0};
-    struct directions8 h = around_normal(level_sample(&s->first, u), phi);
+    struct half_directions h = around_normal(level_sample(&s->first, u), phi);
     h.x = q.x * h.x;
     h.y = q.y * h.y;
-    const struct directions8 other = {-h.x, -h.y, h.z};
-    const wide_double c = wide_double_max(dot8(wo, h), none);
-    const wide_double c1 = wide_double_max(dot8(wo, other), none);
-    h = select8(left * (c + c1) < c, h, other);
-    const wide_double twice = 2 * dot8(wo, h);
-    return (struct directions8){twice * h.x - wo.x, twice * h.y - wo.y, twice * h.z - wo.z};
+    const struct half_directions other = {-h.x, -h.y, h.z};
+    const wide_double c = wide_double_max(half_dot(wo, h), none);
+    const wide_double c1 = wide_double_max(half_dot(wo, other), none);
+    h = half_select(left * (c + c1) < c, h, other);
+    const wide_double twice = 2 * half_dot(wo, h);
+    return (struct half_directions){twice * h.x - wo.x, twice * h.y - wo.y, twice * h.z - wo.z};
 }
 
 // direction_around, x = sin^2 of half the angle.
-static struct directions8 around(struct directions8 axis, wide_double x, struct azimuth phi) {
+static struct half_directions around(struct half_directions axis, wide_double x, struct azimuth phi) {
     const wide_double cos_a = 1 - 2 * x, sin_a = 2 * wide_double_sqrt(x * (1 - x));
     const wide_double sign = wide_double_copysign(wide_double_of(1), axis.z);
     const wide_double a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
     const wide_double s = sin_a * phi.cosine, t = sin_a * phi.sine;
-    return (struct directions8){s * (1 + sign * axis.x * axis.x * a) + t * b + cos_a * axis.x,
+    return (struct half_directions){s * (1 + sign * axis.x * axis.x * a) + t * b + cos_a * axis.x,
                                 s * sign * b + t * (sign + axis.y * axis.y * a) + cos_a * axis.y,
                                 -s * sign * axis.x - t * axis.y + cos_a * axis.z};
 }
 
-static struct directions8 strategy_sample(const struct curve_strategy *c, struct directions8 wo,
+static struct half_directions strategy_sample(const struct curve_strategy *c, struct half_directions wo,
                                           wide_double left, wide_double u, wide_double v,
                                           struct azimuth phi) {
-    const struct directions8 mirror = {-wo.x, -wo.y, wo.z};
+    const struct half_directions mirror = {-wo.x, -wo.y, wo.z};
     switch (c->kind) {
     case STRATEGY_COSINE: return around_normal(u, phi);
     case STRATEGY_POLAR: return polar_sample(c, wo, left, u, v, phi);
@@ -220,11 +220,11 @@ static void choose_strategies(const struct bin_sampler *s, wide_double u1,
     }
 }
 
-struct directions8 wide_strategy_sample(const struct bin_sampler *s,
+struct half_directions wide_strategy_sample(const struct bin_sampler *s,
                                         const wide_double reach[WIDE_STRATEGIES],
-                                        struct directions8 wo, wide_double left, wide_double u1,
+                                        struct half_directions wo, wide_double left, wide_double u1,
                                         wide_double u2) {
-    struct directions8 wi = wo;
+    struct half_directions wi = wo;
     wide_long here[WIDE_STRATEGIES];
     wide_double rest[WIDE_STRATEGIES], phi = 2 * M_PI * u2;
     choose_strategies(s, u1, here, rest);
@@ -234,7 +234,7 @@ struct directions8 wide_strategy_sample(const struct bin_sampler *s,
     const struct azimuth azimuth = azimuth_of(phi); // the dearest of all: once
     for (uint32_t i = 0; i < s->count; i++)
         if (wide_long_bits(here[i]))
-            wi = select8(here[i], strategy_sample(&s->strategy[i], wo, left, rest[i] * reach[i], u2,
+            wi = half_select(here[i], strategy_sample(&s->strategy[i], wo, left, rest[i] * reach[i], u2,
                                                   azimuth), wi);
     return wi;
 }

@@ -195,7 +195,7 @@ bool area_mesh_sample(const struct area_mesh *a, vec3 p, struct vec2 u, struct l
     return true;
 }
 
-// ---- sixteen lit points: the operations above, lane by lane
+// ---- a lit point a lane: the operations above, lane by lane
 
 // Corner k of the rectangle's first or, where the mask is set, second triangle.
 static struct wide3 corner_wide(const struct area_mesh *a, wide_mask second, uint32_t k) {

@@ -210,7 +210,7 @@ static float sphere_pdf_sa(const struct area_quadric *q, vec3 p) {
     return side == INSIDE ? 1 / (4 * PI) : cone_pdf(q->radius * q->radius / d2);
 }
 
-// ---- sixteen lit points outside of a round sphere that emits outwards: the operations above, lane by
+// ---- a lit point a lane, outside of a round sphere that emits outwards: the operations above, lane by
 // lane
 
 bool area_quadric_is_wide(const struct area_quadric *q) {

@@ -31,7 +31,7 @@ bool area_mesh_init(struct area_mesh *a, const struct shape *shape);
 void area_mesh_finish(struct area_mesh *a);
 bool area_mesh_sample(const struct area_mesh *a, vec3 p, struct vec2 u, struct light_sample *s,
                       struct texture_point *at);
-// The same for sixteen lit points, of a rectangle.
+// The same for a lit point a lane, of a rectangle.
 wide_mask area_rectangle_sample_wide(const struct area_mesh *a, const struct wide3 *p,
                                      const wide u[2], struct light_samples *s);
 float area_mesh_pdf_sa(const struct area_mesh *a, vec3 p, const struct light_hit *hit);
@@ -70,7 +70,7 @@ struct area_quadric {
 bool area_quadric_init(struct area_quadric *q, const struct shape *shape);
 bool area_quadric_sample(const struct area_quadric *q, vec3 p, struct vec2 u,
                          struct light_sample *s, struct texture_point *at);
-// The same for sixteen lit points, of a sphere that is_wide.
+// The same for a lit point a lane, of a sphere that is_wide.
 bool area_quadric_is_wide(const struct area_quadric *q);
 wide_mask area_sphere_sample_wide(const struct area_quadric *q, const struct wide3 *p,
                                   const wide u[2], struct light_samples *s);

@@ -27,7 +27,7 @@ struct light_sample {
     vec3 n;            // normal there, for offsetting; zero: do not offset
 };
 
-// Samples of sixteen lit points.
+// Samples of a lit point a lane.
 struct light_samples {
     struct wide3 wi, p, p_error, n, emission;
     wide distance, pdf_sa;

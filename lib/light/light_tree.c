@@ -16,15 +16,18 @@ static const float LEAST_COSINE = 0.0625f;
 // So many stay in the cache of a core: nothing is sent for.
 enum { FEW_NODES = 512 };
 
-static inline wide intensity_lanes(const struct light_node *node) {
-    const wide_uint code = __builtin_convertvector(wide_of_bytes(node->intensity), wide_uint);
+// Of WIDE_LANES children from `first` on:
+
+static inline wide intensity_lanes(const struct light_node *node, int first) {
+    const wide_uint code =
+        __builtin_convertvector(wide_of_bytes(node->intensity + first), wide_uint);
     return (wide)((code << 20) + (96u << 23));
 }
 
-static inline struct wide3 centre_lanes(const struct light_node *node) {
-    return (struct wide3){node->origin[0] + node->step * wide_of_bytes(node->centre[0]),
-                          node->origin[1] + node->step * wide_of_bytes(node->centre[1]),
-                          node->origin[2] + node->step * wide_of_bytes(node->centre[2])};
+static inline struct wide3 centre_lanes(const struct light_node *node, int first) {
+    return (struct wide3){node->origin[0] + node->step * wide_of_bytes(node->centre[0] + first),
+                          node->origin[1] + node->step * wide_of_bytes(node->centre[1] + first),
+                          node->origin[2] + node->step * wide_of_bytes(node->centre[2] + first)};
 }
 
 static inline wide axis_lanes(const int8_t v[WIDE_LANES]) {
@@ -36,25 +39,26 @@ static inline wide axis_lanes(const int8_t v[WIDE_LANES]) {
 // angles, b is what the child fills, o what its normals fill, w lies between their axis and the
 // place, n between the receiver's normal and the child; of all but o cosine and sine are kept times
 // the distance, so that no root waits for another.
-static inline wide importance(const struct light_node *node, const struct light_place *at) {
+static inline wide importance(const struct light_node *node, int first,
+                              const struct light_place *at) {
     const wide none = {0}, one = wide_of(1);
-    const wide half = wide_of_bytes(node->spread) * (1.0f / 255), half2 = half * half;
+    const wide half = wide_of_bytes(node->spread + first) * (1.0f / 255), half2 = half * half;
     const wide cos_o = 1 - 2 * half2, sin_o = 2 * half * wide_sqrt(wide_max(1 - half2, none));
-    const wide sin_b = node->radius_step * wide_of_bytes(node->radius), r2 = sin_b * sin_b;
-    const struct wide3 d = wide3_sub(centre_lanes(node), wide3_of(at->p));
+    const wide sin_b = node->radius_step * wide_of_bytes(node->radius + first), r2 = sin_b * sin_b;
+    const struct wide3 d = wide3_sub(centre_lanes(node, first), wide3_of(at->p));
     const wide d2 = wide_dot(d, d);
     const wide_mask inside = d2 <= r2;
     const wide far2 = wide_select(inside, r2, d2), inv2 = 1 / far2;
     const wide cos_b = wide_sqrt(far2 - r2);
     // beyond o + b the light shines slantwise
-    const struct wide3 axis = {axis_lanes(node->axis[0]), axis_lanes(node->axis[1]),
-                               axis_lanes(node->axis[2])};
+    const struct wide3 axis = {axis_lanes(node->axis[0] + first), axis_lanes(node->axis[1] + first),
+                               axis_lanes(node->axis[2] + first)};
     const wide cos_w = -wide_dot(d, axis);
     const wide sin_w = wide_sqrt(wide_max(d2 - cos_w * cos_w, none));
     const wide cos_ob = cos_o * cos_b - sin_o * sin_b, sin_ob = sin_o * cos_b + cos_o * sin_b;
     const wide_mask straight = inside | (sin_ob < 0) | (cos_w > cos_ob);
     const wide cos_l = wide_select(straight, one, (cos_w * cos_ob + sin_w * sin_ob) * inv2);
-    const wide intensity = intensity_lanes(node);
+    const wide intensity = intensity_lanes(node, first);
     wide value = intensity * wide_max(cos_l, wide_of(SLACK));
     if (length2(at->n) > 0) {
         const wide cos_n = wide_dot(d, wide3_of(at->n));
@@ -63,7 +67,8 @@ static inline wide importance(const struct light_node *node, const struct light_
                                        (cos_n * cos_b + sin_n * sin_b) * inv2);
         value *= wide_max(cos_i, wide_of(LEAST_COSINE));
     }
-    const wide code = wide_of_bytes(node->intensity), cos_e = wide_of_bytes(node->cos_e) * (1.0f / 255);
+    const wide code = wide_of_bytes(node->intensity + first);
+    const wide cos_e = wide_of_bytes(node->cos_e + first) * (1.0f / 255);
     const wide_mask dark = (cos_l < cos_e - SLACK) | (code <= 0);
     // at the very point of a light without size the product is infinite
     return wide_select(dark, none, wide_min(value * inv2, wide_of(1e36f)));
@@ -90,11 +95,14 @@ struct table {
     double sum;
 };
 
-static inline struct table table_of(wide v) {
+static inline struct table table_of(const struct light_node *node, const struct light_place *at) {
     struct table t;
+    wide v[LIGHT_TREE_CHILDREN / WIDE_LANES];
     float4 f[4];
     double4 r[4];
-    memcpy(f, &v, sizeof f);
+    for (int i = 0; i < LIGHT_TREE_CHILDREN / WIDE_LANES; i++)
+        v[i] = importance(node, WIDE_LANES * i, at);
+    memcpy(f, v, sizeof f);
     for (int j = 0; j < 4; j++)
         r[j] = doubles_of(f[j]);
     const double4 two = r[0] + r[1], sum = two + (r[2] + r[3]);
@@ -116,7 +124,7 @@ static inline double table_value(const struct table *t, int i) {
 // By rounding, beyond the last.
 static __attribute__((noinline)) int table_last(const struct table *t) {
     int last = 0;
-    for (int i = 0; i < WIDE_LANES; i++)
+    for (int i = 0; i < LIGHT_TREE_CHILDREN; i++)
         last = table_value(t, i) > 0 ? i : last;
     return last;
 }
@@ -147,12 +155,12 @@ struct descent {
 static inline bool descend(const struct light_tree *t, const struct light_place *at,
                            struct descent *d) {
     const struct light_node *node = &t->nodes[d->node];
-    const struct table values = table_of(importance(node, at));
+    const struct table values = table_of(node, at);
     if (!(values.sum > 0))
         return false;
     double x = d->u * values.sum;
     const int i = table_choose(&values, &x);
-    d->slot = node->inner >> i & 1 ? LIGHT_TREE_NONE : WIDE_LANES * d->node + (uint32_t)i;
+    d->slot = node->inner >> i & 1 ? LIGHT_TREE_NONE : LIGHT_TREE_CHILDREN * d->node + (uint32_t)i;
     d->lowest = node->lowest >> i & 1;
     d->node = node->first + (uint32_t)__builtin_popcount(node->inner & ((1u << i) - 1));
     x /= table_value(&values, i);
@@ -167,8 +175,8 @@ static inline struct descent descent_of(double u) {
 
 // The items of a node that has nothing else, before it is looked at itself.
 static inline void prefetch_leaves(const struct light_tree *t, uint32_t node) {
-    const char *leaves = (const char *)&t->leaves[WIDE_LANES * (size_t)node];
-    for (size_t k = 0; k < WIDE_LANES * sizeof *t->leaves; k += 64)
+    const char *leaves = (const char *)&t->leaves[LIGHT_TREE_CHILDREN * (size_t)node];
+    for (size_t k = 0; k < LIGHT_TREE_CHILDREN * sizeof *t->leaves; k += 64)
         __builtin_prefetch(leaves + k);
 }
 
@@ -221,9 +229,9 @@ uint32_t light_tree_choose_lanes(const struct light_tree *t, uint32_t wanted,
 // The lowest two nodes; what is above them is mostly in the cache.
 static inline void prefetch_way(const struct light_tree *t, const struct light_slot *s) {
     if (s->slot != LIGHT_TREE_NONE)
-        prefetch_node(&t->nodes[s->slot / WIDE_LANES]);
+        prefetch_node(&t->nodes[s->slot / LIGHT_TREE_CHILDREN]);
     if (s->parent != LIGHT_TREE_NONE)
-        prefetch_node(&t->nodes[s->parent / WIDE_LANES]);
+        prefetch_node(&t->nodes[s->parent / LIGHT_TREE_CHILDREN]);
 }
 
 void light_tree_prefetch(const struct light_tree *t, const uint32_t *items, int count) {
@@ -241,9 +249,9 @@ float light_tree_pmf(const struct light_tree *t, const struct light_place *at, u
     double probability = 1;
     if (t->node_count > FEW_NODES)
         prefetch_way(t, lowest);
-    for (uint32_t s = lowest->slot; s != LIGHT_TREE_NONE; s = t->parents[s / WIDE_LANES]) {
-        const struct table values = table_of(importance(&t->nodes[s / WIDE_LANES], at));
-        const double value = table_value(&values, (int)(s % WIDE_LANES));
+    for (uint32_t s = lowest->slot; s != LIGHT_TREE_NONE; s = t->parents[s / LIGHT_TREE_CHILDREN]) {
+        const struct table values = table_of(&t->nodes[s / LIGHT_TREE_CHILDREN], at);
+        const double value = table_value(&values, (int)(s % LIGHT_TREE_CHILDREN));
         if (!(value > 0))
             return 0;
         probability *= value / values.sum;
@@ -258,7 +266,7 @@ struct light_leaf *light_tree_leaf(struct light_tree *t, uint32_t item) {
 
 int light_tree_depth(const struct light_tree *t, uint32_t item) {
     int nodes = 0;
-    for (uint32_t s = t->slots[item].slot; s != LIGHT_TREE_NONE; s = t->parents[s / WIDE_LANES])
+    for (uint32_t s = t->slots[item].slot; s != LIGHT_TREE_NONE; s = t->parents[s / LIGHT_TREE_CHILDREN])
         nodes++;
     return nodes;
 }
@@ -272,6 +280,6 @@ void light_tree_finish(struct light_tree *t) {
 }
 
 size_t light_tree_bytes(const struct light_tree *t) {
-    return t->node_count * (sizeof *t->nodes + sizeof *t->parents + WIDE_LANES * sizeof *t->leaves) +
+    return t->node_count * (sizeof *t->nodes + sizeof *t->parents + LIGHT_TREE_CHILDREN * sizeof *t->leaves) +
            t->item_count * sizeof *t->slots;
 }

@@ -17,6 +17,8 @@
 
 #include "math/wide.h"
 
+enum { LIGHT_TREE_CHILDREN = 16 }; // of a node
+
 // Where one light (a point, a triangle, ...) stands and whither it shines.
 struct light_bounds {
     vec3 min, max;
@@ -72,7 +74,7 @@ uint32_t light_tree_choose_lanes(const struct light_tree *t, uint32_t wanted,
 // The probability that choose finds the item.
 float light_tree_pmf(const struct light_tree *t, const struct light_place *at, uint32_t item);
 // Sends for the memory that light_tree_pmf will need, without waiting for it.
-// At most sixteen items.
+// At most one for each lane.
 void light_tree_prefetch(const struct light_tree *t, const uint32_t *items, int count);
 // For who fills it with what the item is. NULL: it is not in the tree.
 struct light_leaf *light_tree_leaf(struct light_tree *t, uint32_t item);
@@ -83,7 +85,7 @@ int light_tree_depth(const struct light_tree *t, uint32_t item);
 
 #define LIGHT_TREE_NONE UINT32_MAX // slot of an item that is not in the tree
 
-// Children of a node, a lane each, in bytes and rounded so that they hold what they bound: three
+// Children of a node, in bytes and rounded so that they hold what they bound: three
 // cache lines, and a few hundred kilobytes for all but the lowest nodes of a million lights, since a
 // choice mostly waits for memory. Those that are nodes follow one another.
 struct light_node {
@@ -91,11 +93,11 @@ struct light_node {
     float step;         // of the centres
     float radius_step;
     uint32_t first;     // of the children that are nodes
-    uint16_t inner;     // bit a lane: the child is a node
+    uint16_t inner;     // bit a child: it is a node
     uint16_t lowest;    // it is a node whose children are all items
-    uint8_t centre[3][WIDE_LANES], radius[WIDE_LANES]; // of a sphere, in steps
-    int8_t axis[3][WIDE_LANES];    // of length 127 at most
-    uint8_t spread[WIDE_LANES];    // 255: 1; sine of half the angle that the normals fill
-    uint8_t cos_e[WIDE_LANES];     // 255: 1
-    uint8_t intensity[WIDE_LANES]; // 5 bits of exponent, 3 of fraction; 0: none. The greatest is 255
+    uint8_t centre[3][LIGHT_TREE_CHILDREN], radius[LIGHT_TREE_CHILDREN]; // of a sphere, in steps
+    int8_t axis[3][LIGHT_TREE_CHILDREN];    // of length 127 at most
+    uint8_t spread[LIGHT_TREE_CHILDREN];    // 255: 1; sine of half the angle that the normals fill
+    uint8_t cos_e[LIGHT_TREE_CHILDREN];     // 255: 1
+    uint8_t intensity[LIGHT_TREE_CHILDREN]; // 5 bits of exponent, 3 of fraction; 0: none. The greatest is 255
 };

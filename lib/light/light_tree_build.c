@@ -91,7 +91,7 @@ static void set_steps(struct light_node *node, const struct bounds *b, int n, fl
 
 static void set_lanes(struct light_node *node, const struct light_item *items,
                       const struct light_range *ranges, int n) {
-    struct bounds b[WIDE_LANES] = {0};
+    struct bounds b[LIGHT_TREE_CHILDREN] = {0};
     float moved, strongest = 0;
     for (int i = 0; i < n; i++) {
         b[i] = bounds_of(items, &ranges[i]);
@@ -125,11 +125,11 @@ static int worst_range(const struct light_range *ranges, int n, uint32_t fits) {
 }
 
 static int split_for_node(struct builder *b, const struct light_range *from, int depth,
-                          struct light_range out[WIDE_LANES]) {
+                          struct light_range out[LIGHT_TREE_CHILDREN]) {
     const uint32_t fits = light_range_unit(from->c.count);
     int n = 1;
     out[0] = *from;
-    for (int worst; n < WIDE_LANES && (worst = worst_range(out, n, fits)) >= 0; n++) {
+    for (int worst; n < LIGHT_TREE_CHILDREN && (worst = worst_range(out, n, fits)) >= 0; n++) {
         struct light_range two[2];
         light_splitter_split(&b->s, &out[worst], depth, two);
         out[worst] = two[0];
@@ -147,14 +147,14 @@ static void reserve(struct builder *b, uint32_t nodes) {
 static void build(struct builder *b, const struct light_range *from, uint32_t index, uint32_t parent,
                   int depth) {
     struct light_tree *t = b->tree;
-    struct light_range ranges[WIDE_LANES];
+    struct light_range ranges[LIGHT_TREE_CHILDREN];
     const int n = split_for_node(b, from, depth, ranges);
     struct light_node node = {.first = t->node_count};
     set_lanes(&node, b->s.items, ranges, n);
     for (int i = 0; i < n; i++) {
-        const uint32_t slot = WIDE_LANES * index + (uint32_t)i;
+        const uint32_t slot = LIGHT_TREE_CHILDREN * index + (uint32_t)i;
         node.inner |= (uint16_t)((ranges[i].c.count > 1) << i);
-        node.lowest |= (uint16_t)((ranges[i].c.count > 1 && ranges[i].c.count <= WIDE_LANES) << i);
+        node.lowest |= (uint16_t)((ranges[i].c.count > 1 && ranges[i].c.count <= LIGHT_TREE_CHILDREN) << i);
         if (ranges[i].c.count == 1)
             t->slots[b->s.items[ranges[i].begin].index] = (struct light_slot){slot, parent, 0};
     }
@@ -165,7 +165,7 @@ static void build(struct builder *b, const struct light_range *from, uint32_t in
     uint32_t child = node.first;
     for (int i = 0; i < n; i++)
         if (ranges[i].c.count > 1)
-            build(b, &ranges[i], child++, WIDE_LANES * index + (uint32_t)i, depth + 1);
+            build(b, &ranges[i], child++, LIGHT_TREE_CHILDREN * index + (uint32_t)i, depth + 1);
 }
 
 void light_tree_init(struct light_tree *t, const struct light_bounds *items, uint32_t count) {
@@ -190,7 +190,7 @@ void light_tree_init(struct light_tree *t, const struct light_bounds *items, uin
         build(&b, &all, 0, LIGHT_TREE_NONE, 0);
     }
     light_splitter_finish(&b.s);
-    t->leaves = mem_array((size_t)WIDE_LANES * t->node_count, sizeof *t->leaves);
+    t->leaves = mem_array((size_t)LIGHT_TREE_CHILDREN * t->node_count, sizeof *t->leaves);
     for (uint32_t i = 0; i < count; i++)
         if (t->slots[i].slot != LIGHT_TREE_NONE)
             t->leaves[t->slots[i].slot].item = i;

@@ -123,7 +123,7 @@ static uint32_t partition(struct light_item *items, const struct light_range *r,
 
 // ---- few items: whole subtrees go to either side, so that the lowest nodes are full
 
-enum { FEW_ITEMS = WIDE_LANES * WIDE_LANES * WIDE_LANES };
+enum { FEW_ITEMS = LIGHT_TREE_CHILDREN * LIGHT_TREE_CHILDREN * LIGHT_TREE_CHILDREN };
 
 // A place along an axis, in the order of unsigned numbers, and below it which item.
 typedef uint64_t key;
@@ -162,8 +162,8 @@ static void sort_keys(key *keys, key *other, uint32_t count) {
 
 // At a multiple of the unit, by the order of the keys; .bin is the number of items that go left.
 static struct split best_multiple(const struct light_item *items, uint32_t count, const key *keys) {
-    struct light_cluster part[WIDE_LANES], left = EMPTY, right = EMPTY;
-    float right_cost[WIDE_LANES];
+    struct light_cluster part[LIGHT_TREE_CHILDREN], left = EMPTY, right = EMPTY;
+    float right_cost[LIGHT_TREE_CHILDREN];
     const uint32_t unit = light_range_unit(count);
     struct split best = {0, (int)unit, INFINITY};
     const int n = (int)((count + unit - 1) / unit);
@@ -211,7 +211,7 @@ static uint32_t split_few(struct light_splitter *s, const struct light_range *r)
 void light_splitter_split(struct light_splitter *s, const struct light_range *r, int depth,
                           struct light_range out[2]) {
     uint32_t cut = r->begin + (r->end - r->begin) / 2;
-    if (r->c.count > WIDE_LANES && r->c.count <= FEW_ITEMS) {
+    if (r->c.count > LIGHT_TREE_CHILDREN && r->c.count <= FEW_ITEMS) {
         cut = split_few(s, r);
     } else if (r->c.count > 2 && depth < MOST_BINNED_DEPTH) {
         struct bins bins;

@@ -42,7 +42,7 @@ float light_range_cost(const struct light_range *r);
 // The items of each child when a node of so many is full: 1, 16, and 256 at most, since full nodes
 // further up would not pay for worse splits.
 static inline uint32_t light_range_unit(uint32_t count) {
-    const uint32_t low = WIDE_LANES, high = low * low;
+    const uint32_t low = LIGHT_TREE_CHILDREN, high = low * low;
     return count <= low ? 1 : count <= high ? low : high;
 }
 

@@ -33,6 +33,6 @@ float sphere_table_pdf_sa(const struct sphere_table *t, vec3 w);
 // false: the picture is black
 bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, float *pdf_sa,
                          spectrum *value);
-// sphere_table_sample for sixteen pairs of numbers, with the same results.
+// sphere_table_sample for a pair of numbers a lane, with the same results.
 wide_mask sphere_table_sample_wide(const struct sphere_table *t, const wide u[2], struct wide3 *w,
                                    wide *pdf_sa, struct wide3 *value);

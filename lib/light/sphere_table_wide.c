@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// sphere_table_sample for sixteen pairs of numbers, operation by operation. The table is larger than
+// sphere_table_sample for a pair of numbers a lane, operation by operation. The table is larger than
 // caches: all lanes send for what one stage reads before any of them reads it.
 #include "light/sphere_table.h"
 #include "math/wide_elementary.h"
@@ -8,7 +8,7 @@
 static const float GRID = 0x1p-24f; // step of uniform_float
 static const float SMALLEST_SINE = 1e-7f;
 
-// The patches of sixteen lanes.
+// The patches of all lanes.
 struct patches {
     uint32_t x[WIDE_LANES], y[WIDE_LANES];
     const float *texel[WIDE_LANES]; // at their first corner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Aiming at sun and sky for sixteen lit points: aim of sunsky.c, operation by operation. Only the
+// Aiming at sun and sky for a lit point a lane: aim of sunsky.c, operation by operation. Only the
 // search in the sky's table goes lane by lane.
 #include "light/sunsky.h"
 #include "light/turn.h"

@@ -7,9 +7,9 @@ void cdf_nodes_init(struct cdf_nodes *n, size_t rows, int count) {
     size_t numbers = (size_t)count + 1;
     *n = (struct cdf_nodes){0};
     do {
-        const size_t nodes = (numbers + WIDE_LANES - 1) / WIDE_LANES;
-        n->width[n->levels] = WIDE_LANES * nodes;
-        n->level[n->levels++] = mem_array(rows * WIDE_LANES * nodes, sizeof(float));
+        const size_t nodes = (numbers + CDF_NODE - 1) / CDF_NODE;
+        n->width[n->levels] = CDF_NODE * nodes;
+        n->level[n->levels++] = mem_array(rows * CDF_NODE * nodes, sizeof(float));
         numbers = nodes;
     } while (numbers > 1);
     for (int level = 0; level < n->levels; level++)
@@ -27,7 +27,7 @@ void cdf_nodes_index(struct cdf_nodes *n, size_t row) {
     for (int level = 1; level < n->levels; level++) {
         const float *from = n->level[level - 1] + row * n->width[level - 1];
         float *to = n->level[level] + row * n->width[level];
-        for (size_t i = 0; i < n->width[level - 1] / WIDE_LANES; i++)
-            to[i] = from[WIDE_LANES * i];
+        for (size_t i = 0; i < n->width[level - 1] / CDF_NODE; i++)
+            to[i] = from[CDF_NODE * i];
     }
 }

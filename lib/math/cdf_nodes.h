@@ -3,14 +3,14 @@
 //
 // A search by halves waits for memory at nearly every step. Here one cache line holds sixteen sums,
 // another the first of each of sixteen such lines, and so on: a search reads a line a level, and
-// sixteen searches go through the levels side by side, so that they wait together.
+// the searches of all lanes go through the levels side by side, so that they wait together.
 #pragma once
 
 #include <stddef.h>
 
 #include "math/wide.h"
 
-enum { CDF_LEVELS = 8 };
+enum { CDF_LEVELS = 8, CDF_NODE = 16 };
 
 struct cdf_nodes {
     int levels;
@@ -30,13 +30,15 @@ static inline float *cdf_nodes_row(const struct cdf_nodes *n, size_t row) {
 void cdf_nodes_index(struct cdf_nodes *n, size_t row);
 
 static inline const float *cdf_node(const struct cdf_nodes *n, int level, size_t row, uint32_t i) {
-    return n->level[level] + row * n->width[level] + (size_t)WIDE_LANES * i;
+    return n->level[level] + row * n->width[level] + (size_t)CDF_NODE * i;
 }
 
 // The last of a node's numbers that is not above u; the first one never is.
 static inline uint32_t cdf_child(const float *node, uint32_t i, float u) {
-    const wide_mask passed = wide_load(node) <= wide_of(u);
-    return WIDE_LANES * i + (uint32_t)__builtin_popcount(wide_bits(passed)) - 1;
+    uint32_t passed = 0;
+    for (int k = 0; k < CDF_NODE; k += WIDE_LANES)
+        passed |= wide_bits(wide_load(node + k) <= wide_of(u)) << k;
+    return CDF_NODE * i + (uint32_t)__builtin_popcount(passed) - 1;
 }
 
 // The last i with sum i <= u, u in [0, 1).
@@ -47,7 +49,7 @@ static inline uint32_t cdf_nodes_find(const struct cdf_nodes *n, size_t row, flo
     return i;
 }
 
-// For sixteen numbers, each in a row of its own.
+// For a number a lane, each in a row of its own.
 static inline void cdf_nodes_find_wide(const struct cdf_nodes *n, const uint32_t row[WIDE_LANES],
                                        wide u, uint32_t found[WIDE_LANES]) {
     for (int i = 0; i < WIDE_LANES; i++)

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sixteen numbers at once: the lanes of a packet, one value of each.
+// WIDE_LANES numbers at once, one of each lane: as many as a register of the target holds, sixteen with
+// AVX-512, eight with AVX2, and two registers of four elsewhere. Wider vectors than the target has,
+// gcc takes to pieces in memory.
 //
 // The same formula as for one number, in the same order, gives the same bits in every lane, whatever
-// the other lanes hold. Masks have all bits of a lane set, or none. Native with AVX-512, pieces of
-// smaller vectors elsewhere.
+// the other lanes hold and however many there are: what sums or compares across lanes has a number
+// of its own to go by. Masks have all bits of a lane set, or none.
 #pragma once
 
 #include <string.h>
@@ -14,11 +16,38 @@
 
 #include "math/vec.h"
 
+// How many, and for __builtin_shufflevector the lanes by halves, those 1, 2, 4 and 8 before each, the
+// next of each, and each of the lower half three times.
+#if defined(__AVX512F__)
 enum { WIDE_LANES = 16 };
+#define WIDE_LOWER 0, 1, 2, 3, 4, 5, 6, 7
+#define WIDE_UPPER 8, 9, 10, 11, 12, 13, 14, 15
+#define WIDE_BEFORE_1 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14
+#define WIDE_BEFORE_2 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13
+#define WIDE_BEFORE_4 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
+#define WIDE_BEFORE_8 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7
+#define WIDE_NEXT 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 15
+#define WIDE_THRICE_0 0, 0, 0, 1, 1, 1, 2, 2
+#define WIDE_THRICE_1 2, 3, 3, 3, 4, 4, 4, 5
+#define WIDE_THRICE_2 5, 5, 6, 6, 6, 7, 7, 7
+#else
+enum { WIDE_LANES = 8 };
+#define WIDE_LOWER 0, 1, 2, 3
+#define WIDE_UPPER 4, 5, 6, 7
+#define WIDE_BEFORE_1 0, 0, 1, 2, 3, 4, 5, 6
+#define WIDE_BEFORE_2 0, 0, 0, 1, 2, 3, 4, 5
+#define WIDE_BEFORE_4 0, 0, 0, 0, 0, 1, 2, 3
+#define WIDE_BEFORE_8 0, 0, 0, 0, 0, 0, 0, 0
+#define WIDE_NEXT 1, 2, 3, 4, 5, 6, 7, 7
+#define WIDE_THRICE_0 0, 0, 0, 1
+#define WIDE_THRICE_1 1, 1, 2, 2
+#define WIDE_THRICE_2 2, 3, 3, 3
+#endif
+enum { WIDE_HALF = WIDE_LANES / 2, WIDE_ALL = (1 << WIDE_LANES) - 1 }; // WIDE_ALL: a bit a lane
 
-typedef float wide __attribute__((vector_size(64)));
-typedef int32_t wide_int __attribute__((vector_size(64)));
-typedef uint32_t wide_uint __attribute__((vector_size(64)));
+typedef float wide __attribute__((vector_size(4 * WIDE_LANES)));
+typedef int32_t wide_int __attribute__((vector_size(4 * WIDE_LANES)));
+typedef uint32_t wide_uint __attribute__((vector_size(4 * WIDE_LANES)));
 typedef wide_int wide_mask;
 
 struct wide3 {
@@ -26,11 +55,11 @@ struct wide3 {
 };
 
 static inline wide wide_of(float v) {
-    return (wide){v, v, v, v, v, v, v, v, v, v, v, v, v, v, v, v};
+    return v - (wide){0}; // of -0 it makes -0, as a sum would not
 }
 
 static inline wide_int wide_int_of(int32_t v) {
-    return (wide_int){v, v, v, v, v, v, v, v, v, v, v, v, v, v, v, v};
+    return v - (wide_int){0};
 }
 
 static inline wide wide_load(const float v[WIDE_LANES]) {
@@ -39,12 +68,14 @@ static inline wide wide_load(const float v[WIDE_LANES]) {
     return w;
 }
 
-// Sixteen bytes as numbers.
+// Bytes as numbers.
 static inline wide wide_of_bytes(const uint8_t v[WIDE_LANES]) {
 #if defined(__AVX512F__)
     return (wide)_mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128((const void *)v)));
+#elif defined(__AVX2__)
+    return (wide)_mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64((const void *)v)));
 #else
-    wide w;
+    wide w = {0};
     for (int i = 0; i < WIDE_LANES; i++)
         w[i] = v[i];
     return w;
@@ -54,8 +85,10 @@ static inline wide wide_of_bytes(const uint8_t v[WIDE_LANES]) {
 static inline wide wide_of_signed_bytes(const int8_t v[WIDE_LANES]) {
 #if defined(__AVX512F__)
     return (wide)_mm512_cvtepi32_ps(_mm512_cvtepi8_epi32(_mm_loadu_si128((const void *)v)));
+#elif defined(__AVX2__)
+    return (wide)_mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(_mm_loadl_epi64((const void *)v)));
 #else
-    wide w;
+    wide w = {0};
     for (int i = 0; i < WIDE_LANES; i++)
         w[i] = v[i];
     return w;
@@ -66,8 +99,7 @@ static inline wide wide_of_signed_bytes(const int8_t v[WIDE_LANES]) {
 // a lane and packs and unpacks for it: three times the instructions. What passes here it leaves alone.
 static inline wide_mask wide_whole(wide_mask m) {
 #if defined(__clang__) && defined(__AVX__) && !defined(__AVX512F__)
-    __m256 *half = (__m256 *)&m;
-    __asm__("" : "+x"(half[0]), "+x"(half[1]));
+    __asm__("" : "+x"(m));
 #endif
     return m;
 }
@@ -86,8 +118,7 @@ static inline uint32_t wide_bits(wide_mask m) {
 #if defined(__AVX512F__)
     return _mm512_test_epi32_mask((__m512i)m, (__m512i)m);
 #elif defined(__AVX__)
-    const __m256 *half = (const __m256 *)&m;
-    return (uint32_t)_mm256_movemask_ps(half[0]) | (uint32_t)_mm256_movemask_ps(half[1]) << 8;
+    return (uint32_t)_mm256_movemask_ps((__m256)m);
 #else
     uint32_t bits = 0;
     for (int i = 0; i < WIDE_LANES; i++)
@@ -101,13 +132,17 @@ static inline bool wide_any(wide_mask m) {
 }
 
 static inline wide_mask wide_mask_of(uint32_t bits) {
-    const wide_int lane = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
-    return (wide_int_of((int32_t)bits) & lane) != 0;
+    const wide_int lane = {WIDE_LOWER, WIDE_UPPER};
+    return (wide_int_of((int32_t)bits) & 1 << lane) != 0;
 }
 
 // Lanes of a where the mask is set, of b elsewhere.
 static inline wide_int wide_int_select(wide_mask m, wide_int a, wide_int b) {
+#if defined(__AVX__) && !defined(__AVX512F__)
+    return (wide_int)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)m);
+#else
     return (a & m) | (b & ~m);
+#endif
 }
 
 static inline wide wide_select(wide_mask m, wide a, wide b) {
@@ -118,6 +153,8 @@ static inline wide wide_select(wide_mask m, wide a, wide b) {
 static inline wide wide_min(wide a, wide b) {
 #if defined(__AVX512F__)
     return (wide)_mm512_min_ps((__m512)a, (__m512)b);
+#elif defined(__AVX__)
+    return (wide)_mm256_min_ps((__m256)a, (__m256)b);
 #else
     return wide_select(a < b, a, b);
 #endif
@@ -126,9 +163,26 @@ static inline wide wide_min(wide a, wide b) {
 static inline wide wide_max(wide a, wide b) {
 #if defined(__AVX512F__)
     return (wide)_mm512_max_ps((__m512)a, (__m512)b);
+#elif defined(__AVX__)
+    return (wide)_mm256_max_ps((__m256)a, (__m256)b);
 #else
     return wide_select(a > b, a, b);
 #endif
+}
+
+// In each lane what is so many lanes before it (1, 2, 4 or 8), or the first.
+static inline wide wide_before(wide a, int lanes) {
+    switch (lanes) {
+    case 1: return __builtin_shufflevector(a, a, WIDE_BEFORE_1);
+    case 2: return __builtin_shufflevector(a, a, WIDE_BEFORE_2);
+    case 4: return __builtin_shufflevector(a, a, WIDE_BEFORE_4);
+    default: return __builtin_shufflevector(a, a, WIDE_BEFORE_8);
+    }
+}
+
+// What is in the lane behind, or the last.
+static inline wide wide_next(wide a) {
+    return __builtin_shufflevector(a, a, WIDE_NEXT);
 }
 
 static inline wide wide_abs(wide a) {
@@ -138,6 +192,8 @@ static inline wide wide_abs(wide a) {
 static inline wide wide_sqrt(wide a) {
 #if defined(__AVX512F__)
     return (wide)_mm512_sqrt_ps((__m512)a);
+#elif defined(__AVX__)
+    return (wide)_mm256_sqrt_ps((__m256)a);
 #else
     for (int i = 0; i < WIDE_LANES; i++)
         a[i] = sqrtf(a[i]);
@@ -197,37 +253,18 @@ static inline struct wide3 wide3_negate(wide_mask m, struct wide3 a) {
 }
 
 #if defined(__AVX__) && !defined(__AVX512F__)
-// a, b, c, d as rows of four by four matrices side by side, to their columns and back.
-static inline void wide_transpose8(__m256 a, __m256 b, __m256 c, __m256 d, __m256 out[4]) {
-    const __m256d ab_lo = (__m256d)_mm256_unpacklo_ps(a, b), ab_hi = (__m256d)_mm256_unpackhi_ps(a, b);
-    const __m256d cd_lo = (__m256d)_mm256_unpacklo_ps(c, d), cd_hi = (__m256d)_mm256_unpackhi_ps(c, d);
-    out[0] = (__m256)_mm256_unpacklo_pd(ab_lo, cd_lo);
-    out[1] = (__m256)_mm256_unpackhi_pd(ab_lo, cd_lo);
-    out[2] = (__m256)_mm256_unpacklo_pd(ab_hi, cd_hi);
-    out[3] = (__m256)_mm256_unpackhi_pd(ab_hi, cd_hi);
+// Rows of two matrices of four by four side by side, to their columns and back.
+static inline void wide_transpose(const __m256 in[4], __m256 out[4]) {
+    const __m256d a = (__m256d)_mm256_unpacklo_ps(in[0], in[1]);
+    const __m256d b = (__m256d)_mm256_unpackhi_ps(in[0], in[1]);
+    const __m256d c = (__m256d)_mm256_unpacklo_ps(in[2], in[3]);
+    const __m256d d = (__m256d)_mm256_unpackhi_ps(in[2], in[3]);
+    out[0] = (__m256)_mm256_unpacklo_pd(a, c);
+    out[1] = (__m256)_mm256_unpackhi_pd(a, c);
+    out[2] = (__m256)_mm256_unpacklo_pd(b, d);
+    out[3] = (__m256)_mm256_unpackhi_pd(b, d);
 }
 
-// Eight lanes of wide_gather4 and wide_scatter4.
-static inline void wide_gather8(const float *const row[8], wide out[4], int half) {
-    __m256 r[4];
-    for (int k = 0; k < 4; k++)
-        r[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row[k])),
-                                    _mm_loadu_ps(row[k + 4]), 1);
-    wide_transpose8(r[0], r[1], r[2], r[3], r);
-    for (int k = 0; k < 4; k++)
-        ((__m256 *)&out[k])[half] = r[k];
-}
-
-static inline void wide_scatter8(const wide in[4], float *const row[8], int half) {
-    __m256 r[4];
-    for (int k = 0; k < 4; k++)
-        r[k] = ((const __m256 *)&in[k])[half];
-    wide_transpose8(r[0], r[1], r[2], r[3], r);
-    for (int k = 0; k < 4; k++) {
-        _mm_storeu_ps(row[k], _mm256_castps256_ps128(r[k]));
-        _mm_storeu_ps(row[k + 4], _mm256_extractf128_ps(r[k], 1));
-    }
-}
 #endif
 
 // Four numbers that lie together in memory for each lane: out[k] lane i is row[i][k].
@@ -249,8 +286,12 @@ static inline void wide_gather4(const float *const row[WIDE_LANES], wide out[4])
     out[2] = (wide)_mm512_unpacklo_pd(b, d);
     out[3] = (wide)_mm512_unpackhi_pd(b, d);
 #elif defined(__AVX__)
-    for (int half = 0; half < 2; half++)
-        wide_gather8(row + 8 * half, out, half);
+    __m256 r[4];
+    for (int k = 0; k < 4; k++)
+        r[k] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(row[k])),
+                                    _mm_loadu_ps(row[k + 4]), 1);
+    wide_transpose(r, r);
+    memcpy(out, r, sizeof r);
 #else
     for (int i = 0; i < WIDE_LANES; i++)
         for (int k = 0; k < 4; k++)
@@ -274,8 +315,13 @@ static inline void wide_scatter4(const wide in[4], float *const row[WIDE_LANES])
         _mm_storeu_ps(row[k + 12], _mm512_extractf32x4_ps(r[k], 3));
     }
 #elif defined(__AVX__)
-    for (int half = 0; half < 2; half++)
-        wide_scatter8(in, row + 8 * half, half);
+    __m256 r[4];
+    memcpy(r, in, sizeof r);
+    wide_transpose(r, r);
+    for (int k = 0; k < 4; k++) {
+        _mm_storeu_ps(row[k], _mm256_castps256_ps128(r[k]));
+        _mm_storeu_ps(row[k + 4], _mm256_extractf128_ps(r[k], 1));
+    }
 #else
     for (int i = 0; i < WIDE_LANES; i++)
         for (int k = 0; k < 4; k++)

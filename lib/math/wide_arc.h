@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logarithms and exponentials near 0, and the arc tangent, of sixteen numbers at once: to a few
+// Logarithms and exponentials near 0, and the arc tangent, of a number a lane: to a few
 // units in the last place of the result, also where that is small. Coefficients of Cephes.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// elementary.h for sixteen lanes, operation by operation.
+// elementary.h for all lanes, operation by operation.
 #pragma once
 
 #include "math/wide.h"
@@ -7,6 +7,8 @@
 static inline wide wide_rint(wide a) {
 #if defined(__AVX512F__)
     return (wide)_mm512_roundscale_ps((__m512)a, _MM_FROUND_CUR_DIRECTION);
+#elif defined(__AVX__)
+    return (wide)_mm256_round_ps((__m256)a, _MM_FROUND_CUR_DIRECTION);
 #else
     for (int i = 0; i < WIDE_LANES; i++)
         a[i] = rintf(a[i]);

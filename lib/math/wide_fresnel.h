@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// fresnel.h for sixteen lanes, operation by operation.
+// fresnel.h for all lanes, operation by operation.
 #pragma once
 
 #include "math/wide.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// hash.h for sixteen lanes.
+// hash.h for all lanes.
 #pragma once
 
 #include "math/wide.h"
 
-typedef uint32_t wide_half __attribute__((vector_size(32)));
-typedef uint64_t wide_half64 __attribute__((vector_size(64)));
+typedef uint32_t wide_half __attribute__((vector_size(4 * WIDE_HALF)));
+typedef uint64_t wide_half64 __attribute__((vector_size(8 * WIDE_HALF)));
 
 static inline wide_uint wide_hash_u32(wide_uint x) {
     x ^= x >> 16;
@@ -20,17 +20,17 @@ static inline wide_uint wide_hash_combine(wide_uint seed, wide_uint v) {
     return wide_hash_u32(seed ^ (v + 0x9e3779b9u + (seed << 6) + (seed >> 2)));
 }
 
-// Sixteen 64-bit words: lanes 0 to 7, and 8 to 15.
+// 64-bit words: of the lower half of the lanes, and of the upper.
 struct wide_u64 {
     wide_half64 a, b;
 };
 
 static inline wide_half wide_lower(wide_uint v) {
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3, 4, 5, 6, 7);
+    return __builtin_shufflevector(v, v, WIDE_LOWER);
 }
 
 static inline wide_half wide_upper(wide_uint v) {
-    return __builtin_shufflevector(v, v, 8, 9, 10, 11, 12, 13, 14, 15);
+    return __builtin_shufflevector(v, v, WIDE_UPPER);
 }
 
 static inline struct wide_u64 wide_widen(wide_uint v) {
@@ -41,7 +41,7 @@ static inline struct wide_u64 wide_widen(wide_uint v) {
 static inline wide_uint wide_low_word(struct wide_u64 v) {
     const wide_half a = __builtin_convertvector(v.a, wide_half);
     const wide_half b = __builtin_convertvector(v.b, wide_half);
-    return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    return __builtin_shufflevector(a, b, WIDE_LOWER, WIDE_UPPER);
 }
 
 static inline wide_uint wide_high_word(struct wide_u64 v) {

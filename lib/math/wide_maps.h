@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of vec.h, frame.h, ray.h and warp.h for sixteen lanes, operation by
+// The functions of vec.h, frame.h, ray.h and warp.h for all lanes, operation by
 // operation, so that a lane has the bits of the function of one: tests/render/wide.c holds them to
 // that. Derivations stand there.
 #pragma once
@@ -11,7 +11,7 @@ static inline struct wide3 wide_normalize(struct wide3 a) {
     const wide l2 = wide_dot(a, a);
     const wide scale = 1 / wide_sqrt(l2);
     struct wide3 n = {a.x * scale, a.y * scale, a.z * scale};
-    const uint32_t extreme = ~wide_bits(wide_both(l2 > 1e-30f, l2 < 1e30f)) & 0xffff;
+    const uint32_t extreme = ~wide_bits(wide_both(l2 > 1e-30f, l2 < 1e30f)) & WIDE_ALL;
     for (uint32_t left = extreme; __builtin_expect(left != 0, 0); left &= left - 1) {
         const int i = __builtin_ctz(left);
         wide3_set_lane(&n, i, normalize(wide3_lane(&a, i)));

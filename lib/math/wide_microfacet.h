@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// microfacet.h and microfacet.c for sixteen lanes of one distribution, operation by operation.
+// microfacet.h and microfacet.c for the lanes of one distribution, operation by operation.
 // Derivations stand there.
 #pragma once
 

@@ -14,7 +14,7 @@
 
 #include "math/wide_hash.h"
 
-// For one word, and for those of sixteen lanes.
+// For one word, and for those of all lanes.
 #define OWEN_FUNCTIONS(word, scramble_reversed, second_reversed)                                   \
     static inline word scramble_reversed(word x, word seed) {                                      \
         x ^= x * 0x3d20adeau;                                                                      \

@@ -25,7 +25,7 @@ struct sampler {
     uint32_t reversed;  // bits of index, mirrored
 };
 
-// The samplers of sixteen lanes, as far as numbers depend on them.
+// The samplers of all lanes, as far as numbers depend on them.
 struct sampler_lanes {
     wide_uint seed, index, reversed;
 };

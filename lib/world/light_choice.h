@@ -76,7 +76,7 @@ static inline spectrum light_late_emission(const struct world_light *light, vec3
 // The density with which light_choice_sample finds the point of a light that a ray has found.
 float light_choice_pdf_sa(const struct light_choice *c, const struct world_light *light,
                           const struct light_place *at, const struct light_hit *hit);
-// Sends for the memory that this will need, without waiting for it: at most sixteen lights, and the
+// Sends for the memory that this will need, without waiting for it: at most one light a lane, and the
 // triangle of each that was found.
 void light_choice_prefetch(const struct light_choice *c, const struct world_light *all,
                            const uint32_t *found, const uint32_t *triangles, int count);

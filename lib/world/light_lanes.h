@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light sampling for sixteen places: world_sample_light and world_shadow_ray, lane by lane.
+// Light sampling for a place a lane: world_sample_light and world_shadow_ray, lane by lane.
 #pragma once
 
 #include "world/world.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// surface.c for sixteen hits of triangles, operation by operation.
+// surface.c for a hit of a triangle a lane, operation by operation.
 #include "world/world.h"
 
 // Of each lane's triangle: corner k of an array of vertex positions.

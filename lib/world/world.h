@@ -95,7 +95,7 @@ static inline bool world_sample_light(const struct world *w, const struct light_
     return light_choice_sample(&w->choice, w->lights, w->light_count, at, u1, u2, light, s);
 }
 
-// Sends for the memory that world_light_pdf_sa will need for so many lights (at most sixteen), without
+// Sends for the memory that world_light_pdf_sa will need for so many lights (at most one a lane), without
 // waiting for it; triangles: where each was found.
 static inline void world_prefetch_lights(const struct world *w, const uint32_t *found,
                                          const uint32_t *triangles, int count) {
@@ -129,7 +129,7 @@ struct surface {
     uint32_t shape, primitive, instance;
 };
 
-// Sixteen such, of triangles that are not instanced, without what only textures need. Lanes that are
+// One a lane, of triangles that are not instanced, without what only textures need. Lanes that are
 // not wanted have the hit of one that is.
 struct surfaces {
     struct wide3 p, p_error, ng;

@@ -4,7 +4,7 @@
 //     light_choice SCENE
 //
 // Prints, for each way of choosing, nanoseconds for a light sample and for the density of a hit, as
-// sixteen paths together pay them and (in brackets) one alone, the variance of what a sample says of the irradiance without shadows (relative to its square, the mean
+// the paths of all lanes together pay them and (in brackets) one alone, the variance of what a sample says of the irradiance without shadows (relative to its square, the mean
 // over the points; a sample costs its time times this to equal error), and seconds and bytes of
 // making it ready.
 #include <stdio.h>
@@ -48,7 +48,7 @@ static double cpu_seconds(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-// A sample for each place, as the path tracer takes them: one by one, or sixteen together.
+// A sample for each place, as the path tracer takes them: one by one, or WIDE_LANES together.
 struct samples {
     struct light_hit *hits;
     uint32_t *found; // the light, or SCENE_NONE
@@ -67,7 +67,7 @@ static void sample_alone(const struct world *w, const struct places *p, struct r
     }
 }
 
-static void sample_sixteen(const struct world *w, const struct places *p, int first,
+static void sample_lanes(const struct world *w, const struct places *p, int first,
                            struct rng *rng, struct samples *out) {
     struct light_lanes l;
     struct wide3 at, side;
@@ -79,7 +79,7 @@ static void sample_sixteen(const struct world *w, const struct places *p, int fi
         u2[0][i] = rng_float(rng);
         u2[1][i] = rng_float(rng);
     }
-    const uint32_t lit = world_sample_lights(w, 0xffff, &at, &side, u1, u2, &l);
+    const uint32_t lit = world_sample_lights(w, WIDE_ALL, &at, &side, u1, u2, &l);
     for (int i = 0; i < WIDE_LANES; i++) {
         out->found[first + i] = lit >> i & 1 ? l.light[i] : SCENE_NONE;
         out->hits[first + i] = (struct light_hit){.wi = wide3_lane(&l.s.wi, i),
@@ -97,7 +97,7 @@ static double time_samples(const struct world *w, const struct places *p, bool t
         if (!together)
             sample_alone(w, p, &rng, out);
         for (int i = 0; together && i < p->count; i += WIDE_LANES)
-            sample_sixteen(w, p, i, &rng, out);
+            sample_lanes(w, p, i, &rng, out);
     }
     return (cpu_seconds() - start) * 1e9 / (REPEATS * (double)p->count);
 }
@@ -106,7 +106,7 @@ static bool has_density(const struct world *w, uint32_t light) {
     return light != SCENE_NONE && !w->lights[light].type->delta;
 }
 
-// As sixteen paths do that have met lights, on any of their triangles.
+// As the paths of all lanes do that have met lights, on any of their triangles.
 static size_t sum_densities(const struct world *w, const struct places *p, bool together, int first,
                             struct rng *rng, const struct samples *s, double *sum) {
     uint32_t triangle[WIDE_LANES], from[WIDE_LANES], triangles[WIDE_LANES];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials that are shaded sixteen points at once give every lane the bits of one alone: packets of
+// Materials that are shaded WIDE_LANES points at once give every lane the bits of one alone: packets of
 // random directions and numbers, their lanes mixed of all parameter sets that share a kind.
 #include "bsdf/bsdf_wide.h"
 #include "check.h"

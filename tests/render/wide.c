@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vertices that are shaded, and lights that are sampled, sixteen at a time have the bits of those one
+// Vertices that are shaded, and lights that are sampled, WIDE_LANES at a time have the bits of those one
 // by one, for every sampler; and pictures of scenes whose packets mix pixels do not depend on the
 // crop. Materials by themselves: property/bsdf_wide.c.
 #include "math/hash.h"

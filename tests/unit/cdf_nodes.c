@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entry that cdf_nodes finds is that of a walk along the sums, for one number and for sixteen,
+// The entry that cdf_nodes finds is that of a walk along the sums, for one number and for one a lane,
 // around the counts at which a level begins and with entries of no weight.
 #include "check.h"
 #include "math/cdf_nodes.h"

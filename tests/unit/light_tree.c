@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The light tree against brute force: what can light a place has a probability, the probabilities
-// of all lights sum to 1, choose draws from them (chi-square, false alarm 1e-3 in all), sixteen
+// of all lights sum to 1, choose draws from them (chi-square, false alarm 1e-3 in all), all lanes
 // together have the bits of each alone, and nothing depends on the unit of length or of intensity.
 #include <string.h>
 
@@ -133,13 +133,13 @@ static void check_place(const struct light_tree *t, const struct light_place *at
     }
 }
 
-// Sixteen together have the bits of each alone.
+// All lanes together have the bits of each alone.
 static void check_lanes(const struct light_tree *t, int count, float scale, struct rng *r) {
     struct light_place at[WIDE_LANES];
     double u[WIDE_LANES];
     const struct light_leaf *leaves[WIDE_LANES];
     float pmfs[WIDE_LANES];
-    const uint32_t wanted = rng_u32(r) & 0xffff;
+    const uint32_t wanted = rng_u32(r) & WIDE_ALL;
     for (int i = 0; i < WIDE_LANES; i++) {
         at[i] = place(r, i, count, scale);
         u[i] = (double)rng_float(r);

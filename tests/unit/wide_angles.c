@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions and angles of sixteen numbers at once, against those of the library.
+// Elementary functions and angles of a number a lane, against those of the library.
 #include "integrator/wide_angles.h"
 
 #include "check.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The basis that answers where the eye sees an object: sixteen points at once leave the marks, the
+// The basis that answers where the eye sees an object: WIDE_LANES points at once leave the marks, the
 // densities and the directions of one by one, bit by bit, where lanes repeat the first, too.
 #include "integrator/wide_basis.h"
 

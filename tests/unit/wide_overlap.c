@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shares of sixteen triangles at once against those of one (unit/overlap has these against points), and
+// Shares of WIDE_LANES triangles at once against those of one (unit/overlap has these against points), and
 // matrices against the vectors of their curves.
 #include "integrator/wide_overlap.h"
 
@@ -11,9 +11,12 @@
 
 enum { MOST = 128 };
 
-// Sixteen triangles above the surface, a quarter of them around the mirror direction.
-static void make_triangles(const double wo[3], double size, struct overlap_triangle t[WIDE_LANES]) {
-    for (int i = 0; i < WIDE_LANES; i++) {
+// As many whatever the lanes, so that all builds see the same.
+enum { TRIANGLES = 16 };
+
+// Triangles above the surface, a quarter of them around the mirror direction.
+static void make_triangles(const double wo[3], double size, struct overlap_triangle t[TRIANGLES]) {
+    for (int i = 0; i < TRIANGLES; i++) {
         double middle[3], corner[3][3];
         unit(middle);
         middle[2] = fabs(middle[2]);
@@ -26,8 +29,11 @@ static void make_triangles(const double wo[3], double size, struct overlap_trian
 
 static const double light[OVERLAP_CHANNELS] = {1, 0, 2};
 
-static void shares_of(struct wide_overlap *o, const double wo[3], const struct overlap_triangle *t,
-                      uint32_t lane, size_t count) {
+// Of one of the triangles, beside its neighbours.
+static void shares_of(struct wide_overlap *o, const double wo[3], const struct overlap_triangle *all,
+                      uint32_t which, size_t count) {
+    const uint32_t lane = which % WIDE_LANES;
+    const struct overlap_triangle *t = &all[which - lane];
     struct wide_nodes n;
     struct wide_fit fit[OVERLAP_AXES];
     wide gamma[OVERLAP_AXES][OVERLAP_NODES];
@@ -96,17 +102,17 @@ static void agrees_with_one(struct bench *b, enum basis_kind kind, uint32_t bins
             const struct gamma gamma = {kinds[k], 50};
             const struct basis basis[2] = {
                 basis_make(&b->arena, kind, bins, n % 3 ? SPACING_UNIFORM : SPACING_QUADRATIC)};
-            struct overlap_triangle t[WIDE_LANES];
+            struct overlap_triangle t[TRIANGLES];
             struct wide_overlap o;
             double wo[3], sum = 0;
-            const uint32_t lane = (uint32_t)n % WIDE_LANES;
+            const uint32_t which = (uint32_t)n % TRIANGLES;
             make_overlap(b, &o, &gamma, NULL, basis, 1e-3);
             wo_of(wo);
             make_triangles(wo, 0.01 + (n % 4 ? 0.05 : 0.2) * uniform(), t);
-            shares_of(&o, wo, t, lane, bins);
+            shares_of(&o, wo, t, which, bins);
             o.scalar.sums = b->expected;
             o.scalar.tolerance = 1e-5;
-            exact_shares(&o.scalar, wo, &t[lane], bins);
+            exact_shares(&o.scalar, wo, &t[which], bins);
             for (uint32_t j = 0; j < bins; j++) {
                 const double e = fabs(b->sums[3 * j] - b->expected[3 * j]);
                 sum += b->sums[3 * j];
@@ -135,15 +141,15 @@ static void sums_to_vectors(struct bench *b, enum basis_kind kind) {
         const struct gamma g[2] = {{pairs[n % 2][0], 0}, {pairs[n % 2][1], 0}};
         const struct basis basis[2] = {basis_make(&b->arena, kind, ROWS, SPACING_UNIFORM),
                                        basis_make(&b->arena, kind, COLUMNS, SPACING_UNIFORM)};
-        struct overlap_triangle t[WIDE_LANES];
+        struct overlap_triangle t[TRIANGLES];
         struct wide_overlap o;
         double wo[3], sum[2][ROWS] = {{0}};
-        const uint32_t lane = (uint32_t)n % WIDE_LANES;
+        const uint32_t which = (uint32_t)n % TRIANGLES;
         wo_of(wo);
         make_triangles(wo, 0.01 + (n % 4 ? 0.05 : 0.8) * uniform(), t);
         const double tolerance = n % 3 ? 1e-3 : 1e-2;
         make_overlap(b, &o, &g[0], &g[1], basis, tolerance);
-        shares_of(&o, wo, t, lane, ROWS * COLUMNS);
+        shares_of(&o, wo, t, which, ROWS * COLUMNS);
         for (int i = 0; i < ROWS * COLUMNS; i++) {
             sum[0][i / COLUMNS] += b->sums[3 * i];
             sum[1][i % COLUMNS] += b->sums[3 * i];
@@ -151,7 +157,7 @@ static void sums_to_vectors(struct bench *b, enum basis_kind kind) {
         for (int x = 0; x < 2; x++) {
             const uint32_t count = x ? COLUMNS : ROWS;
             make_overlap(b, &o, &g[x], NULL, &basis[x], tolerance);
-            shares_of(&o, wo, t, lane, count);
+            shares_of(&o, wo, t, which, count);
             for (uint32_t j = 0; j < count; j++)
                 worst = fmax(worst, fabs(sum[x][j] - b->sums[3 * j]));
         }
