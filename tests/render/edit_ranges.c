@@ -112,6 +112,7 @@ static void work_goes_on(void) {
     unlink(paths[0]);
     o.resume = true;
     o.job.stop = &stop;
+    o.job.threads = 1; // progress is told by one of them, and the others may be done by then
     o.progress = stop_midway;
     capture_begin();
     const bool whole = precompute_edit(&o, &r);
@@ -120,6 +121,7 @@ static void work_goes_on(void) {
     CHECK(stat(part, &st) == 0 && stat(paths[0], &st) != 0);
     const uint64_t rays = r.rays;
     stop = 0;
+    o.job.threads = 0;
     o.progress = NULL;
     CHECK(precompute_edit(&o, &r));
     CHECK(r.rays > 0 && stat(part, &st) != 0 && same_bytes(paths[0], paths[4]));
