@@ -1,42 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Embree keeps one geometry per shape (its index is the geometry's) and one per instance (after
 // the shapes). Quadrics are user geometries that are intersected in object space, in double.
-#include "accel/accel.h"
+#include "accel/world.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#define EMBREE_4 1
-#else
-#include <embree3/rtcore.h>
-#define EMBREE_4 0
-#endif
-
-#include <stdatomic.h>
 #include <stdio.h>
-#include <string.h>
 
 #if defined(__SSE__)
 #include <immintrin.h>
 #endif
 
-#include "accel/few.h"
 #include "accel/few_blockers.h"
-#include "accel/few_packet.h"
-#include "accel/placed_quadric.h"
 #include "base/log.h"
 #include "base/mem.h"
-
-struct accel {
-    RTCDevice device;
-    RTCScene world;
-    RTCScene *groups; // one per shapegroup
-    uint32_t group_count, shape_count;
-    bool has_instances;
-    struct placed_quadric *quadrics; // by shape index; NULL: the scene has none
-    struct few *few;                 // NULL: the scene is too large for it
-    struct few *blockers;            // of such a scene, the first to try; NULL: none
-    atomic_llong bytes;
-};
 
 const char *accel_version(void) {
     return "Embree " RTC_VERSION_STRING;
@@ -244,172 +219,4 @@ void accel_learn_blockers(struct accel *a, const struct scene *scene, const stru
     struct few_facet facets[FEW_BLOCKERS];
     few_destroy(a->blockers);
     a->blockers = few_create_of(facets, few_blockers_of(a, scene, rays, count, facets));
-}
-
-// ---- queries ----------------------------------------------------------------------------------
-
-static struct RTCRay to_embree(const struct ray *r) {
-    return (struct RTCRay){.org_x = r->o[0], .org_y = r->o[1], .org_z = r->o[2],
-                           .dir_x = r->d[0], .dir_y = r->d[1], .dir_z = r->d[2],
-                           .tnear = r->tmin, .tfar = r->tmax, .mask = ~0u};
-}
-
-bool accel_intersect(const struct accel *a, const struct ray *ray, struct accel_hit *hit) {
-    struct RTCRayHit rh;
-    rh.ray = to_embree(ray);
-    rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if EMBREE_4
-    rtcIntersect1(a->world, &rh, NULL);
-#else
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(a->world, &context, &rh);
-#endif
-    hit->t = rh.ray.tfar;
-    hit->u = rh.hit.u;
-    hit->v = rh.hit.v;
-    hit->shape = rh.hit.geomID; // RTC_INVALID_GEOMETRY_ID == SCENE_NONE
-    hit->primitive = rh.hit.primID;
-    hit->instance =
-        rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? SCENE_NONE : rh.hit.instID[0] - a->shape_count;
-    return hit->shape != SCENE_NONE;
-}
-
-bool accel_occluded(const struct accel *a, const struct ray *ray) {
-    struct RTCRay r = to_embree(ray);
-#if EMBREE_4
-    rtcOccluded1(a->world, &r, NULL);
-#else
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(a->world, &context, &r);
-#endif
-    return r.tfar < 0;
-}
-
-static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, int valid[ACCEL_PACKET],
-                        struct RTCRay16 *p) {
-    for (int i = 0; i < ACCEL_PACKET; i += WIDE_LANES) {
-        const wide_mask traced = wide_mask_of(active >> i);
-        struct accel_rays r;
-        few_packet_rays(rays + i, active >> i, &r);
-        memcpy(valid + i, &traced, sizeof traced);
-        memcpy(p->org_x + i, &r.o.x, sizeof r.o.x);
-        memcpy(p->org_y + i, &r.o.y, sizeof r.o.y);
-        memcpy(p->org_z + i, &r.o.z, sizeof r.o.z);
-        memcpy(p->dir_x + i, &r.d.x, sizeof r.d.x);
-        memcpy(p->dir_y + i, &r.d.y, sizeof r.d.y);
-        memcpy(p->dir_z + i, &r.d.z, sizeof r.d.z);
-        memcpy(p->tnear + i, &r.tmin, sizeof r.tmin);
-        memcpy(p->tfar + i, &r.tmax, sizeof r.tmax);
-    }
-    memset(p->time, 0, sizeof p->time);
-    memset(p->mask, 0xff, sizeof p->mask);
-    for (unsigned i = 0; i < ACCEL_PACKET; i++)
-        p->id[i] = i;
-    memset(p->flags, 0, sizeof p->flags);
-}
-
-bool accel_mixes_packets(const struct accel *a) {
-    return a->few != NULL;
-}
-
-void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET], uint32_t active,
-                       bool coherent, struct accel_hit hits[ACCEL_PACKET]) {
-    if (a->few) {
-        few_packet_intersect(a->few, rays, active, hits);
-        return;
-    }
-    _Alignas(64) int valid[ACCEL_PACKET];
-    struct RTCRayHit16 rh;
-    packet_from(rays, active, valid, &rh.ray);
-    for (int i = 0; i < ACCEL_PACKET; i++)
-        rh.hit.geomID[i] = rh.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-#if EMBREE_4
-    struct RTCIntersectArguments args;
-    rtcInitIntersectArguments(&args);
-    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcIntersect16(valid, a->world, &rh, &args);
-#else
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcIntersect16(valid, a->world, &context, &rh);
-#endif
-    for (int i = 0; i < ACCEL_PACKET; i++) {
-        if (!valid[i])
-            continue;
-        const unsigned instance = rh.hit.instID[0][i];
-        hits[i] = (struct accel_hit){
-            rh.ray.tfar[i], rh.hit.u[i], rh.hit.v[i], rh.hit.geomID[i], rh.hit.primID[i],
-            instance == RTC_INVALID_GEOMETRY_ID ? SCENE_NONE : instance - a->shape_count};
-    }
-}
-
-uint32_t accel_occluded16(const struct accel *a, const struct ray rays[ACCEL_PACKET],
-                          uint32_t active, bool coherent) {
-    if (a->few)
-        return few_packet_occluded(a->few, rays, active);
-    _Alignas(64) int valid[ACCEL_PACKET];
-    struct RTCRay16 p;
-    packet_from(rays, active, valid, &p);
-    coherent = coherent && !a->has_instances; // Embree 3.13.5 may loop forever in an instance
-#if EMBREE_4
-    struct RTCOccludedArguments args;
-    rtcInitOccludedArguments(&args);
-    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-    rtcOccluded16(valid, a->world, &p, &args);
-#else
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    rtcOccluded16(valid, a->world, &context, &p);
-#endif
-    uint32_t blocked = 0;
-    for (int i = 0; i < ACCEL_PACKET; i++)
-        blocked |= (uint32_t)(valid[i] && p.tfar[i] < 0) << i;
-    return blocked;
-}
-
-enum { STREAM = 256 };
-
-// Embree 3 sorts the rays of a stream by octant and walks the tree for those of one together, each
-// by itself.
-static void trace_stream(const struct accel *a, struct RTCRay *rays, uint32_t count) {
-#if EMBREE_4
-    for (uint32_t i = 0; i < count; i++)
-        rtcOccluded1(a->world, &rays[i], NULL);
-#else
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1M(a->world, &context, rays, count, sizeof *rays);
-#endif
-}
-
-static void occluded_stream(const struct accel *a, const struct ray *rays, uint32_t count,
-                            bool *blocked) {
-    struct RTCRay left[STREAM];
-    bool *result[STREAM];
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < count; i += ACCEL_PACKET) {
-        const uint32_t most = count - i < ACCEL_PACKET ? count - i : ACCEL_PACKET;
-        const uint32_t bits = a->blockers ? few_packet_blocked(a->blockers, rays + i, most) : 0;
-        for (uint32_t k = i; k < i + most; k++) {
-            blocked[k] = bits >> (k - i) & 1;
-            left[n] = to_embree(&rays[k]);
-            result[n] = &blocked[k];
-            n += !blocked[k];
-        }
-    }
-    trace_stream(a, left, n);
-    for (uint32_t k = 0; k < n; k++)
-        *result[k] = left[k].tfar < 0;
-}
-
-void accel_occluded_each(const struct accel *a, const struct ray *rays, uint32_t count,
-                         bool *blocked) {
-    for (uint32_t i = 0; i < count; i += STREAM)
-        occluded_stream(a, rays + i, count - i < STREAM ? count - i : STREAM, blocked + i);
 }
