@@ -105,8 +105,10 @@ static void sample_light(const struct path *p, struct trace_context *ctx, struct
                          const struct light_ahead *ahead) {
     if (!ahead)
         sample_one_light(ctx, l, s, closure, side);
-    else if (ahead->lit)
-        vertex_test_light(ctx, s, closure, 0, &ahead->s, 1, &l->shadow);
+    else if (ahead->pdf_sa > 0) {
+        const struct light_sample one = path_light_ahead(ctx->world, ahead);
+        vertex_test_light(ctx, s, closure, 0, &one, 1, &l->shadow);
+    }
     struct contribution *c = &l->shadow.contribution;
     if (!l->shadow.pending)
         return;
@@ -146,19 +148,6 @@ static void shade_surface(const struct path *p, struct trace_context *ctx, struc
     if (++l->events >= INTEGRATOR_MOST_EVENTS && l->alive) {
         l->alive = false;
         ctx->truncated++;
-    }
-}
-
-// The lanes of a packet one by one. hits: by lane.
-static void shade_alone(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                        const struct packet *packet, const struct accel_hit *hits) {
-    struct light_ahead ahead[WIDE_LANES];
-    const uint32_t known = path_sample_ahead(p, ctx->world, lanes, packet, hits, ahead);
-    for (int i = 0; i < packet->count; i++) {
-        struct lane *l = &lanes[packet->lanes[i]];
-        struct surface s;
-        world_surface(ctx->world, &l->ray, &hits[packet->lanes[i]], &s);
-        shade_surface(p, ctx, l, &s, known >> i & 1 ? &ahead[i] : NULL);
     }
 }
 
@@ -313,8 +302,17 @@ static void add_lane(struct kinds *k, uint32_t kind, uint16_t lane) {
     k->lanes[kind][k->count[kind]++] = lane;
 }
 
+static void shade_alone(const struct path *p, struct trace_context *ctx, struct wave *w,
+                        const struct step *step, uint16_t lane) {
+    const struct light_ahead *ahead = &step->lights[lane];
+    struct lane *l = &w->lanes[lane];
+    struct surface s;
+    world_surface(ctx->world, &l->ray, &step->hits[lane], &s);
+    shade_surface(p, ctx, l, &s, step->ahead && ahead->pdf_sa >= 0 ? ahead : NULL);
+}
+
 static void shade_kind(const struct path *p, struct trace_context *ctx, struct wave *w,
-                       const struct accel_hit *hits, uint32_t kind, struct kinds *k) {
+                       const struct step *step, uint32_t kind, struct kinds *k) {
     const uint32_t count = k->count[kind];
     const uint16_t *list = k->lanes[kind];
     // Paths of one sample add to one sum: their order may not depend on the lanes beside them.
@@ -323,7 +321,7 @@ static void shade_kind(const struct path *p, struct trace_context *ctx, struct w
     while (count - done >= least) {
         const uint32_t left = count - done;
         const struct packet group = {list + done, left < WIDE_LANES ? (int)left : WIDE_LANES};
-        path_shade_wide(p, ctx, w->lanes, &group, hits, kind);
+        path_shade_wide(p, ctx, w->lanes, &group, step, kind);
         done += (uint32_t)group.count;
     }
     while (done < count)
@@ -332,27 +330,23 @@ static void shade_kind(const struct path *p, struct trace_context *ctx, struct w
 
 // What comes of a vertex does not depend on other lanes, so those that shade alike go together.
 static void shade_all(const struct path *p, struct trace_context *ctx, struct wave *w,
-                      const struct accel_hit *hits) {
+                      const struct step *step) {
     struct kinds kinds;
     memset(kinds.count, 0, sizeof kinds.count);
     for (uint32_t k = 0; k < w->count; k++) {
         const uint16_t i = w->alive[k];
         struct lane *l = &w->lanes[i];
         l->shadow.pending = false;
-        if (hits[i].shape == SCENE_NONE)
+        if (step->hits[i].shape == SCENE_NONE)
             leave_scene(p, ctx, l);
         else
-            add_lane(&kinds, path_wide_kind(ctx, l, &hits[i]), i);
+            add_lane(&kinds, path_wide_kind(ctx, l, &step->hits[i]), i);
     }
     for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
-        shade_kind(p, ctx, w, hits, kind, &kinds);
-    shade_kind(p, ctx, w, hits, KIND_OWN, &kinds);
-    for (uint32_t k = 0; k < kinds.count[KIND_ALONE]; k += WIDE_LANES) {
-        const uint32_t left = kinds.count[KIND_ALONE] - k;
-        const struct packet some = {&kinds.lanes[KIND_ALONE][k],
-                                    left < WIDE_LANES ? (int)left : WIDE_LANES};
-        shade_alone(p, ctx, w->lanes, &some, hits);
-    }
+        shade_kind(p, ctx, w, step, kind, &kinds);
+    shade_kind(p, ctx, w, step, KIND_OWN, &kinds);
+    for (uint32_t k = 0; k < kinds.count[KIND_ALONE]; k++)
+        shade_alone(p, ctx, w, step, kinds.lanes[KIND_ALONE][k]);
 }
 
 // The paths of a sample. Chains, which are of one path, are not shared.
@@ -409,15 +403,16 @@ static void settle(struct trace_context *ctx, struct wave *w, bool first) {
 
 // One vertex of every living lane, stage by stage.
 static void advance(const struct path *p, struct trace_context *ctx, struct wave *w, bool camera) {
-    struct accel_hit hits[MOST_LANES]; // by lane
+    struct step step;
     struct packet packet;
     for (uint32_t first = 0; first < w->count; first += (uint32_t)packet.count) {
         packet = packet_at(ctx->world, w->alive, w->count, first, camera);
-        find_hits(ctx, w->lanes, &packet, camera, hits);
+        find_hits(ctx, w->lanes, &packet, camera, step.hits);
     }
     if (camera)
-        share_first_hits(w, paths_of_sample(p, ctx), hits);
-    shade_all(p, ctx, w, hits);
+        share_first_hits(w, paths_of_sample(p, ctx), step.hits);
+    path_sample_ahead(p, ctx->world, w->lanes, w->alive, w->count, &step);
+    shade_all(p, ctx, w, &step);
     settle(ctx, w, camera);
 }
 

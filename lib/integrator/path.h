@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrator/vertex.h"
+#include "world/light_lanes.h"
 
 struct path {
     int max_depth, rr_depth, shading_samples;
@@ -67,19 +68,38 @@ static inline uint32_t path_wide_kind(const struct trace_context *ctx, const str
     return way == RESPONSE_WORLD ? kind : way == RESPONSE_OWN ? KIND_OWN : KIND_ALONE;
 }
 
-// A light sample that was taken before its place was known.
-struct light_ahead {
-    bool lit;
-    struct light_sample s;
+// What random numbers depend on, and what lies beside it.
+struct lane_state {
+    struct sampler_lanes sampler;
+    wide scale;
+    wide_uint events;
 };
 
-// Light samples of lanes that are shaded one by one, side by side where they do not depend on the
-// place: those of world_sample_light. The lanes of the packet that have one, a bit each.
-uint32_t path_sample_ahead(const struct path *p, const struct world *w, const struct lane *lanes,
-                           const struct packet *packet, const struct accel_hit *hits,
-                           struct light_ahead out[WIDE_LANES]);
+void path_gather_state(struct lane *const lane[WIDE_LANES], struct lane_state *out);
+void path_draw(struct lane *const lane[WIDE_LANES], const struct lane_state *s, uint32_t purpose,
+               wide u[2]);
+
+// The sample of a far light, taken before its place was known.
+struct light_ahead {
+    float wi[3], pdf_sa; // 0: it does not light; below: not taken
+    spectrum emission;
+};
+
+// What is known of the lanes of a wave before they are shaded; by lane.
+struct step {
+    struct accel_hit hits[MOST_LANES];
+    bool ahead; // whether light samples do not depend on the place, and are taken first
+    struct light_ahead lights[MOST_LANES];
+};
+
+// Takes the light samples of the lanes listed: those of world_sample_lights.
+void path_sample_ahead(const struct path *p, const struct world *w, struct lane *lanes,
+                       const uint16_t *list, uint32_t count, struct step *step);
+struct light_sample path_light_ahead(const struct world *w, const struct light_ahead *l);
+uint32_t path_lights_ahead(const struct world *w, const struct light_ahead *const l[WIDE_LANES],
+                           uint32_t wanted, struct light_lanes *out);
 
 // One vertex of a packet's lanes, WIDE_LANES at most, whose materials are of this kind: the same as
-// one by one, with the same bits. hits: by lane.
+// one by one, with the same bits.
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                     const struct packet *packet, const struct accel_hit *hits, uint32_t kind);
+                     const struct packet *packet, const struct step *step, uint32_t kind);

@@ -2,51 +2,87 @@
 // A large table of a sky makes a single sample wait for memory several times. Samples of a sky that
 // is the only light need no place, so those of many lanes can wait together.
 #include "integrator/path.h"
-#include "world/light_lanes.h"
 
-// Lanes that will need a sample, as far as is known before their materials are evaluated.
-static uint32_t find_wanted(const struct path *p, const struct world *w, const struct lane *lanes,
-                            const struct packet *packet, const struct accel_hit *hits) {
-    uint32_t wanted = 0;
-    for (int i = 0; i < packet->count; i++) {
-        const uint16_t lane = packet->lanes[i];
-        wanted |= (uint32_t)(w->shapes[hits[lane].shape].smooth &&
-                             path_may_contribute(p, lanes[lane].events + 1)) << i;
-    }
-    return wanted;
+// Whether the lane will need a sample, as far as is known before its material is evaluated.
+static bool is_wanted(const struct path *p, const struct world *w, const struct lane *l,
+                      const struct accel_hit *hit) {
+    if (hit->shape == SCENE_NONE || !path_may_contribute(p, l->events + 1))
+        return false;
+    return w->shapes[hit->shape].smooth || w->shapes[hit->shape].wide_kind;
 }
 
-static void draw(const struct lane *lanes, const struct packet *packet, wide u[2]) {
-    float numbers[2][WIDE_LANES];
+static void draw(struct lane *lanes, const uint16_t *list, uint32_t count, wide u[2]) {
+    struct lane *from[WIDE_LANES];
+    struct lane_state state;
+    for (uint32_t i = 0; i < WIDE_LANES; i++)
+        from[i] = &lanes[list[i < count ? i : 0]];
+    path_gather_state(from, &state);
+    path_draw(from, &state, DRAW_LIGHT_POINT, u);
+}
+
+static void keep(const struct light_samples *s, wide_mask lit, const uint16_t *list, uint32_t count,
+                 struct light_ahead *out) {
+    const wide none = {0}, pdf_sa = wide_select(lit, s->pdf_sa, none);
+    const wide of[4] = {s->wi.x, s->wi.y, s->wi.z, pdf_sa};
+    const wide emission[4] = {s->emission.x, s->emission.y, s->emission.z, none};
+    struct light_ahead spare;
+    float *to[2][WIDE_LANES];
+    for (uint32_t i = 0; i < WIDE_LANES; i++) {
+        struct light_ahead *l = i < count ? &out[list[i]] : &spare;
+        to[0][i] = l->wi;
+        to[1][i] = (float *)(void *)&l->emission;
+    }
+    wide_scatter4(of, to[0]);
+    wide_scatter4(emission, to[1]);
+}
+
+static void take(const struct world *w, struct lane *lanes, const uint16_t *list, uint32_t count,
+                 struct light_ahead *out) {
+    wide u[LIGHT_GROUPS][2];
+    struct light_samples s[LIGHT_GROUPS];
+    wide_mask lit[LIGHT_GROUPS];
+    const uint32_t groups = (count + WIDE_LANES - 1) / WIDE_LANES;
+    for (uint32_t g = 0; g < groups; g++)
+        draw(lanes, list + g * WIDE_LANES, count - g * WIDE_LANES, u[g]);
+    world_sample_far(w, (int)groups, (const wide(*)[2])u, s, lit);
+    for (uint32_t g = 0; g < groups; g++)
+        keep(&s[g], lit[g], list + g * WIDE_LANES, count - g * WIDE_LANES, out);
+}
+
+void path_sample_ahead(const struct path *p, const struct world *w, struct lane *lanes,
+                       const uint16_t *list, uint32_t count, struct step *step) {
+    const uint32_t most = LIGHT_GROUPS * WIDE_LANES;
+    uint16_t wanted[MOST_LANES];
+    uint32_t n = 0;
+    step->ahead = world_lights_are_far(w);
+    for (uint32_t k = 0; step->ahead && k < count; k++) {
+        wanted[n] = list[k];
+        n += is_wanted(p, w, &lanes[list[k]], &step->hits[list[k]]);
+        step->lights[list[k]].pdf_sa = -1;
+    }
+    for (uint32_t k = 0; k < n; k += most)
+        take(w, lanes, wanted + k, n - k < most ? n - k : most, step->lights);
+}
+
+struct light_sample path_light_ahead(const struct world *w, const struct light_ahead *l) {
+    return (struct light_sample){.wi = v3(l->wi[0], l->wi[1], l->wi[2]), .distance = INFINITY,
+                                 .pdf_sa = l->pdf_sa, .emission = l->emission,
+                                 .late = w->lights[0].type->aim != NULL};
+}
+
+uint32_t path_lights_ahead(const struct world *w, const struct light_ahead *const l[WIDE_LANES],
+                           uint32_t wanted, struct light_lanes *out) {
+    const float *row[WIDE_LANES];
+    wide of[4];
     for (int i = 0; i < WIDE_LANES; i++) {
-        const struct lane *l = &lanes[packet->lanes[i < packet->count ? i : 0]];
-        struct sampler s = l->sampler;
-        s.dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * l->events + DRAW_LIGHT_POINT;
-        const struct vec2 point = sampler_2d(&s);
-        numbers[0][i] = point.x;
-        numbers[1][i] = point.y;
+        row[i] = l[i]->wi;
+        out->emission[i] = l[i]->emission;
+        out->light[i] = 0;
     }
-    u[0] = wide_load(numbers[0]);
-    u[1] = wide_load(numbers[1]);
-}
-
-uint32_t path_sample_ahead(const struct path *p, const struct world *w, const struct lane *lanes,
-                           const struct packet *packet, const struct accel_hit *hits,
-                           struct light_ahead out[WIDE_LANES]) {
-    const struct wide3 anywhere = {0};
-    const wide no_choice = {0};
-    struct light_lanes l;
-    wide u[2];
-    const uint32_t wanted = world_lights_are_far(w) ? find_wanted(p, w, lanes, packet, hits) : 0;
-    if (__builtin_popcount(wanted) < LEAST_IN_PACKET)
-        return 0;
-    draw(lanes, packet, u);
-    const uint32_t lit = world_sample_lights(w, wanted, &anywhere, &anywhere, no_choice, u, &l);
-    for (uint32_t left = wanted; left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        out[i].lit = lit >> i & 1;
-        if (out[i].lit)
-            out[i].s = light_lanes_at(&l, i);
-    }
-    return wanted;
+    wide_gather4(row, of);
+    out->s = (struct light_samples){.wi = {of[0], of[1], of[2]}, .pdf_sa = of[3],
+                                    .distance = wide_of(INFINITY)};
+    out->delta = 0;
+    out->late = w->lights[0].type->aim ? wanted : 0;
+    return wanted & wide_bits(of[3] > 0);
 }

@@ -3,7 +3,6 @@
 // stage: the operations of vertex.c, lane by lane. Emission that is found, which few lanes need,
 // goes through the function for one.
 #include "integrator/path.h"
-#include "world/light_lanes.h"
 
 _Static_assert(offsetof(struct lane, scale) == offsetof(struct lane, sampler.reversed) + 8 &&
                    offsetof(struct lane, events) == offsetof(struct lane, scale) + 4 &&
@@ -15,11 +14,12 @@ struct vertices {
     uint32_t active;
     struct lane *lane[WIDE_LANES], *to[WIDE_LANES]; // to read, to write
     const struct accel_hit *hit[WIDE_LANES];
+    const struct light_ahead *ahead[WIDE_LANES];
+    bool has_ahead;
     struct lane spare;
     struct wide3 d, beta;
-    wide scale;
-    wide_uint depth, lobe, events;
-    struct sampler_lanes sampler;
+    struct lane_state state;
+    wide_uint depth, lobe;
     const struct wide_bsdf *kind;
     wide_mask two_sided;
 };
@@ -34,29 +34,34 @@ struct shading {
 };
 
 // Four numbers of each lane, at an offset in struct lane.
-static void gather(const struct vertices *v, size_t offset, wide f[4]) {
+static void gather(struct lane *const lane[WIDE_LANES], size_t offset, wide f[4]) {
     const float *row[WIDE_LANES];
     for (int i = 0; i < WIDE_LANES; i++)
-        row[i] = (const float *)(const void *)((const char *)v->lane[i] + offset);
+        row[i] = (const float *)(const void *)((const char *)lane[i] + offset);
     wide_gather4(row, f);
+}
+
+void path_gather_state(struct lane *const lane[WIDE_LANES], struct lane_state *out) {
+    wide f[4];
+    gather(lane, offsetof(struct lane, sampler.seed), f); // seed, index, count, dimension
+    out->sampler.seed = (wide_uint)f[0];
+    out->sampler.index = (wide_uint)f[1];
+    gather(lane, offsetof(struct lane, sampler.reversed), f); // reversed, padding, scale, events
+    out->sampler.reversed = (wide_uint)f[0];
+    out->scale = f[2];
+    out->events = (wide_uint)f[3];
 }
 
 static void gather_lanes(struct vertices *v) {
     wide f[4];
-    gather(v, offsetof(struct lane, ray.d), f);
+    gather(v->lane, offsetof(struct lane, ray.d), f);
     v->d = (struct wide3){f[0], f[1], f[2]};
-    gather(v, offsetof(struct lane, beta), f);
+    gather(v->lane, offsetof(struct lane, beta), f);
     v->beta = (struct wide3){f[0], f[1], f[2]};
-    gather(v, offsetof(struct lane, from.pdf_sa), f); // pdf_sa, delta, depth, lobe
+    gather(v->lane, offsetof(struct lane, from.pdf_sa), f); // pdf_sa, delta, depth, lobe
     v->depth = (wide_uint)f[2];
     v->lobe = (wide_uint)f[3];
-    gather(v, offsetof(struct lane, sampler.seed), f); // seed, index, count, dimension
-    v->sampler.seed = (wide_uint)f[0];
-    v->sampler.index = (wide_uint)f[1];
-    gather(v, offsetof(struct lane, sampler.reversed), f); // reversed, padding, scale, events
-    v->sampler.reversed = (wide_uint)f[0];
-    v->scale = f[2];
-    v->events = (wide_uint)f[3];
+    path_gather_state(v->lane, &v->state);
 }
 
 // Leaves in `points` the material's data of each lane.
@@ -73,21 +78,26 @@ static void gather_materials(const struct world *w, struct vertices *v,
     v->two_sided = wide_mask_of(two_sided);
 }
 
-static void draw(const struct vertices *v, uint32_t purpose, wide u[2]) {
+void path_draw(struct lane *const lane[WIDE_LANES], const struct lane_state *state, uint32_t purpose,
+               wide u[2]) {
     const bool pair = purpose == DRAW_LIGHT_POINT || purpose == DRAW_DIRECTION;
-    const wide_uint dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * v->events + purpose;
-    const struct sampler_type *type = v->lane[0]->sampler.type;
+    const wide_uint dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * state->events + purpose;
+    const struct sampler_type *type = lane[0]->sampler.type;
     if (type->draw_wide) {
-        type->draw_wide(&v->sampler, dimension, u);
+        type->draw_wide(&state->sampler, dimension, u);
         return;
     }
     for (int i = 0; i < WIDE_LANES; i++) {
-        struct sampler s = v->lane[i]->sampler;
+        struct sampler s = lane[i]->sampler;
         s.dimension = dimension[i];
         const struct vec2 one = pair ? sampler_2d(&s) : (struct vec2){sampler_1d(&s), 0};
         u[0][i] = one.x;
         u[1][i] = one.y;
     }
+}
+
+static void draw(const struct vertices *v, uint32_t purpose, wide u[2]) {
+    path_draw(v->lane, &v->state, purpose, u);
 }
 
 // Lanes that have hit a light which counts; what the densities will need is sent for.
@@ -144,17 +154,23 @@ static struct wide3 into_frame(const struct shading *at, struct wide3 w) {
     return local;
 }
 
+static uint32_t sample_lights(const struct world *w, const struct vertices *v, uint32_t wanted,
+                              const struct shading *at, struct light_lanes *out) {
+    wide u[2], choice[2] = {{0}, {0}};
+    draw(v, DRAW_LIGHT_POINT, u);
+    if (w->choice.draws)
+        draw(v, DRAW_LIGHT, choice);
+    return world_sample_lights(w, wanted, &at->s.p, &at->side, choice[0], u, out);
+}
+
 // vertex_sample_light and path.c's sample_light: leaves shadow tests pending.
 static void light(const struct path *p, struct trace_context *ctx, struct vertices *v,
                   uint32_t wanted, const struct shading *at) {
     struct light_lanes l;
-    wide u[2], choice[2] = {{0}, {0}}, pdf, tmax;
+    wide pdf, tmax;
     struct wide3 o, d;
-    draw(v, DRAW_LIGHT_POINT, u);
-    if (ctx->world->choice.draws)
-        draw(v, DRAW_LIGHT, choice);
-    uint32_t lit =
-        world_sample_lights(ctx->world, wanted, &at->s.p, &at->side, choice[0], u, &l);
+    uint32_t lit = v->has_ahead ? path_lights_ahead(ctx->world, v->ahead, wanted, &l)
+                                : sample_lights(ctx->world, v, wanted, at, &l);
     if (!lit)
         return;
     const struct wide3 wi = into_frame(at, l.s.wi);
@@ -190,7 +206,7 @@ static void light(const struct path *p, struct trace_context *ctx, struct vertic
         c->sampled = true;
         to->shadow.ray.tmin = 0;
         to->shadow.ray.tmax = tmax[i];
-        to->shadow.most_passes = p->max_depth < 0 ? -1 : p->max_depth - 2 - (int)v->events[i];
+        to->shadow.most_passes = p->max_depth < 0 ? -1 : p->max_depth - 2 - (int)v->state.events[i];
         to->shadow.pending = true;
     }
 }
@@ -202,7 +218,7 @@ static uint32_t survive(const struct path *p, const struct vertices *v, uint32_t
     if (!(alive & wide_bits(plays)))
         return alive;
     const wide most = wide_max(beta->x, wide_max(beta->y, beta->z));
-    const wide q = wide_min(2 * most * v->scale, wide_of(0.95f)); // as roulette_chance
+    const wide q = wide_min(2 * most * v->state.scale, wide_of(0.95f)); // as roulette_chance
     wide u[2];
     draw(v, DRAW_ROULETTE, u);
     const wide divisor = wide_select(plays, q, wide_of(1));
@@ -247,13 +263,15 @@ static uint32_t scatter(const struct path *p, struct vertices *v, uint32_t wante
 }
 
 static void choose(struct vertices *v, struct lane *lanes, const struct packet *packet,
-                   const struct accel_hit *hits) {
+                   const struct step *step) {
+    v->has_ahead = step->ahead;
     v->active = (1u << packet->count) - 1;
     for (int i = 0; i < WIDE_LANES; i++) {
         const uint16_t from = packet->lanes[i < packet->count ? i : 0];
         v->lane[i] = &lanes[from];
         v->to[i] = i < packet->count ? v->lane[i] : &v->spare;
-        v->hit[i] = &hits[from];
+        v->hit[i] = &step->hits[from];
+        v->ahead[i] = &step->lights[from];
     }
 }
 
@@ -265,7 +283,7 @@ static uint32_t look(const struct path *p, const struct vertices *v, struct wide
     at->side = wide3_negate(at->below, at->s.frame.n);
     uint32_t goes_on = v->active & wide_bits(wide_whole(up > 0) | (at->below & v->two_sided));
     if (p->max_depth >= 0)
-        goes_on &= wide_bits((wide_mask)(v->events + 1 < (uint32_t)p->max_depth));
+        goes_on &= wide_bits((wide_mask)(v->state.events + 1 < (uint32_t)p->max_depth));
     if (p->strict_normals)
         goes_on &= wide_bits(wide_dot(back, at->s.ng) * up > 0);
     return goes_on;
@@ -284,12 +302,12 @@ static void note_vertices(struct trace_context *ctx, const struct vertices *v,
 }
 
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,
-                     const struct packet *packet, const struct accel_hit *hits, uint32_t kind) {
+                     const struct packet *packet, const struct step *step, uint32_t kind) {
     struct vertices v;
     struct shading at;
     struct wide_points points;
     uint32_t alive = 0;
-    choose(&v, lanes, packet, hits);
+    choose(&v, lanes, packet, step);
     v.kind = kind == KIND_OWN ? ctx->response->own : ctx->world->wide_kinds[kind];
     gather_lanes(&v);
     gather_materials(ctx->world, &v, &points);

@@ -81,19 +81,32 @@ static bool sample(const void *data, vec3 p, struct vec2 u, struct light_sample 
     return true;
 }
 
-static wide_mask sample_wide(const void *data, const struct wide3 *p, const wide u[2],
-                             struct light_samples *s) {
+static void sample_groups(const void *data, int groups, const wide u[][2],
+                          struct light_samples s[], wide_mask lit[]) {
     const struct envmap *e = data;
     const struct wide_frame world = {wide3_of(e->world.x), wide3_of(e->world.y),
                                      wide3_of(e->world.z)};
-    struct wide3 w, value;
+    struct sphere_patches at[LIGHT_GROUPS];
+    if (!e->table.black)
+        sphere_table_find_wide(&e->table, groups, u, at);
+    for (int g = 0; g < groups; g++) {
+        struct wide3 w, value;
+        s[g].distance = wide_of(INFINITY);
+        lit[g] = sphere_table_sample_wide(&e->table, &at[g], u[g], &w, &s[g].pdf_sa, &value);
+        if (e->table.black)
+            continue;
+        s[g].wi = wide_normalize(wide_to_world(&world, w));
+        s[g].emission = wide3_scale(wide_of(e->scale), value);
+    }
+}
+
+static wide_mask sample_wide(const void *data, const struct wide3 *p, const wide u[2],
+                             struct light_samples *s) {
+    const wide group[1][2] = {{u[0], u[1]}};
+    wide_mask lit;
     (void)p;
     *s = (struct light_samples){.distance = wide_of(INFINITY)};
-    const wide_mask lit = sphere_table_sample_wide(&e->table, u, &w, &s->pdf_sa, &value);
-    if (e->table.black)
-        return lit;
-    s->wi = wide_normalize(wide_to_world(&world, w));
-    s->emission = wide3_scale(wide_of(e->scale), value);
+    sample_groups(data, 1, group, s, &lit);
     return lit;
 }
 
@@ -125,7 +138,7 @@ const struct light_type light_envmap = {
     .entry = {.name = "envmap", .help = "environment from a latitude-longitude picture",
               .params = params, .size = sizeof(struct envmap)},
     .infinite = true,
-    .prepare = prepare, .sample = sample, .sample_wide = sample_wide, .emission = emission,
-    .pdf_sa = pdf_sa, .power = power,
+    .prepare = prepare, .sample = sample, .sample_wide = sample_wide,
+    .sample_groups = sample_groups, .emission = emission, .pdf_sa = pdf_sa, .power = power,
     .detail = detail, .finish = finish,
 };

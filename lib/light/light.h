@@ -33,6 +33,8 @@ struct light_samples {
     wide distance, pdf_sa;
 };
 
+enum { LIGHT_GROUPS = 64 / WIDE_LANES };
+
 // A point of a light that was found by a ray. Infinite lights use wi only.
 struct light_hit {
     vec3 wi;        // direction of the ray that found it, from the lit point towards the light
@@ -65,6 +67,10 @@ struct light_type {
     wide_mask (*sample_wide)(const void *data, const struct wide3 *p, const wide u[2],
                              struct light_samples *s);
     bool (*has_wide)(const void *data);
+    // sample_wide of an infinite light for LIGHT_GROUPS groups of lanes at most, which wait for memory
+    // together; p, p_error and n may stay as they are. NULL: one by one.
+    void (*sample_groups)(const void *data, int groups, const wide u[][2],
+                          struct light_samples s[], wide_mask lit[]);
     // Radiance along the ray that found it (towards -wi). NULL for delta lights.
     spectrum (*emission)(const void *data, const struct light_hit *hit);
     // sample's density of finding this point of the light from p. NULL for delta lights.

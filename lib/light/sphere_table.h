@@ -10,6 +10,7 @@
 // third of the next row's sine, so that no light is out of reach.
 #pragma once
 
+#include "light/light.h"
 #include "math/cdf_nodes.h"
 #include "math/wide.h"
 
@@ -33,6 +34,15 @@ float sphere_table_pdf_sa(const struct sphere_table *t, vec3 w);
 // false: the picture is black
 bool sphere_table_sample(const struct sphere_table *t, struct vec2 u, vec3 *w, float *pdf_sa,
                          spectrum *value);
-// sphere_table_sample for a pair of numbers a lane, with the same results.
-wide_mask sphere_table_sample_wide(const struct sphere_table *t, const wide u[2], struct wide3 *w,
-                                   wide *pdf_sa, struct wide3 *value);
+
+// sphere_table_sample for a pair of numbers a lane, with the same results, in two steps: the patches of
+// some groups of lanes are found, and their texels sent for; then each group is sampled.
+struct sphere_patches {
+    uint32_t x[WIDE_LANES], y[WIDE_LANES];
+};
+
+void sphere_table_find_wide(const struct sphere_table *t, int groups, const wide u[][2],
+                            struct sphere_patches found[]);
+wide_mask sphere_table_sample_wide(const struct sphere_table *t, const struct sphere_patches *at,
+                                   const wide u[2], struct wide3 *w, wide *pdf_sa,
+                                   struct wide3 *value);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // sphere_table_sample for a pair of numbers a lane, operation by operation. The table is larger than
-// caches: all lanes send for what one stage reads before any of them reads it.
+// caches: all lanes of all groups send for what one stage reads before any of them reads it.
 #include "light/sphere_table.h"
 #include "math/wide_elementary.h"
 #include "math/wide_hash.h"
@@ -10,7 +10,7 @@ static const float SMALLEST_SINE = 1e-7f;
 
 // The patches of all lanes.
 struct patches {
-    uint32_t x[WIDE_LANES], y[WIDE_LANES];
+    const struct sphere_patches *at;
     const float *texel[WIDE_LANES]; // at their first corner
     wide left, right, top, bottom;  // sums at their edges
     wide row_weight[2];
@@ -24,15 +24,26 @@ static void prefetch_pair(const float *texel) {
     __builtin_prefetch(texel + 5);
 }
 
-static void find_patches(const struct sphere_table *t, const wide u[2], struct patches *p) {
-    static const uint32_t only[WIDE_LANES] = {0};
+void sphere_table_find_wide(const struct sphere_table *t, int groups, const wide u[][2],
+                            struct sphere_patches found[]) {
+    enum { MOST = LIGHT_GROUPS * WIDE_LANES };
+    static const uint32_t only[MOST] = {0};
     const size_t stride = (size_t)t->width + 1;
-    cdf_nodes_find_wide(&t->rows, only, u[1], p->y);
-    cdf_nodes_find_wide(&t->columns, p->y, u[0], p->x);
-    for (int i = 0; i < WIDE_LANES; i++) {
-        p->texel[i] = t->texels[p->y[i] * stride + p->x[i]];
-        prefetch_pair(p->texel[i]);
-        prefetch_pair(p->texel[i] + 3 * stride);
+    float numbers[2][MOST];
+    uint32_t x[MOST], y[MOST];
+    for (int g = 0; g < groups; g++)
+        for (int k = 0; k < 2; k++)
+            memcpy(numbers[k] + g * WIDE_LANES, &u[g][k], sizeof u[g][k]);
+    cdf_nodes_find_all(&t->rows, groups * WIDE_LANES, only, numbers[1], y);
+    cdf_nodes_find_all(&t->columns, groups * WIDE_LANES, y, numbers[0], x);
+    for (int i = 0; i < groups * WIDE_LANES; i++) {
+        const float *texel = t->texels[y[i] * stride + x[i]];
+        prefetch_pair(texel);
+        prefetch_pair(texel + 3 * stride);
+    }
+    for (int g = 0; g < groups; g++) {
+        memcpy(found[g].x, x + g * WIDE_LANES, sizeof found[g].x);
+        memcpy(found[g].y, y + g * WIDE_LANES, sizeof found[g].y);
     }
 }
 
@@ -40,12 +51,12 @@ static void find_patches(const struct sphere_table *t, const wide u[2], struct p
 static void load_sums(const struct sphere_table *t, struct patches *p) {
     float sums[4][WIDE_LANES], weights[2][WIDE_LANES];
     for (int i = 0; i < WIDE_LANES; i++) {
-        const float *rows = cdf_nodes_row(&t->rows, 0) + p->y[i];
-        const float *columns = cdf_nodes_row(&t->columns, p->y[i]) + p->x[i];
+        const float *rows = cdf_nodes_row(&t->rows, 0) + p->at->y[i];
+        const float *columns = cdf_nodes_row(&t->columns, p->at->y[i]) + p->at->x[i];
         for (int k = 0; k < 2; k++) {
             sums[k][i] = rows[k];
             sums[k + 2][i] = columns[k];
-            weights[k][i] = t->row_weight[p->y[i] + (uint32_t)k];
+            weights[k][i] = t->row_weight[p->at->y[i] + (uint32_t)k];
         }
     }
     p->top = wide_load(sums[0]);
@@ -117,18 +128,21 @@ static wide numbers(const uint32_t v[WIDE_LANES]) {
     return __builtin_convertvector(n, wide);
 }
 
-wide_mask sphere_table_sample_wide(const struct sphere_table *t, const wide u[2], struct wide3 *w,
-                                   wide *pdf_sa, struct wide3 *value) {
-    struct patches p;
+wide_mask sphere_table_sample_wide(const struct sphere_table *t, const struct sphere_patches *at,
+                                   const wide u[2], struct wide3 *w, wide *pdf_sa,
+                                   struct wide3 *value) {
+    const size_t stride = (size_t)t->width + 1;
+    struct patches p = {.at = at};
     wide fx, fy, sin_phi, cos_phi, sine, cosine;
     if (t->black)
         return wide_mask_of(0);
-    find_patches(t, u, &p);
+    for (int i = 0; i < WIDE_LANES; i++)
+        p.texel[i] = t->texels[at->y[i] * stride + at->x[i]];
     load_sums(t, &p);
     weigh_corners(t, &p);
     place(&p, u, &fx, &fy);
-    wide_sincos_turn((numbers(p.x) + fx + 0.5f) / (float)t->width - 1, &sin_phi, &cos_phi);
-    wide_sincos_turn(0.5f * (numbers(p.y) + fy) / (float)(t->height - 1), &sine, &cosine);
+    wide_sincos_turn((numbers(at->x) + fx + 0.5f) / (float)t->width - 1, &sin_phi, &cos_phi);
+    wide_sincos_turn(0.5f * (numbers(at->y) + fy) / (float)(t->height - 1), &sine, &cosine);
     *w = (struct wide3){sin_phi * sine, cosine, -cos_phi * sine};
     *pdf_sa = density(t, &p, fx, fy, wide_max(sine, wide_of(SMALLEST_SINE)));
     *value = mix3(fy, mix3(fx, p.colour[0], p.colour[1]), mix3(fx, p.colour[2], p.colour[3]));

@@ -3,7 +3,7 @@
 //
 // A search by halves waits for memory at nearly every step. Here one cache line holds sixteen sums,
 // another the first of each of sixteen such lines, and so on: a search reads a line a level, and
-// the searches of all lanes go through the levels side by side, so that they wait together.
+// many searches go through the levels side by side, so that they wait together.
 #pragma once
 
 #include <stddef.h>
@@ -49,13 +49,13 @@ static inline uint32_t cdf_nodes_find(const struct cdf_nodes *n, size_t row, flo
     return i;
 }
 
-// For a number a lane, each in a row of its own.
-static inline void cdf_nodes_find_wide(const struct cdf_nodes *n, const uint32_t row[WIDE_LANES],
-                                       wide u, uint32_t found[WIDE_LANES]) {
-    for (int i = 0; i < WIDE_LANES; i++)
+// For `count` numbers, each in a row of its own.
+static inline void cdf_nodes_find_all(const struct cdf_nodes *n, int count, const uint32_t *row,
+                                      const float *u, uint32_t *found) {
+    for (int i = 0; i < count; i++)
         found[i] = 0;
     for (int level = n->levels; level-- > 0;)
-        for (int i = 0; i < WIDE_LANES; i++) {
+        for (int i = 0; i < count; i++) {
             found[i] = cdf_child(cdf_node(n, level, row[i], found[i]), found[i], u[i]);
             if (level > 0)
                 __builtin_prefetch(cdf_node(n, level - 1, row[i], found[i]));

@@ -136,16 +136,19 @@ uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struc
 }
 
 bool world_lights_are_far(const struct world *w) {
-    return w->light_count == 1 && w->lights[0].type->infinite && !w->choice.by_part &&
-           is_wide(&w->lights[0]);
+    return w->light_count == 1 && w->lights[0].type->infinite && !w->lights[0].type->delta &&
+           !w->choice.by_part && is_wide(&w->lights[0]);
 }
 
-struct light_sample light_lanes_at(const struct light_lanes *l, int i) {
-    return (struct light_sample){
-        .wi = wide3_lane(&l->s.wi, i), .distance = l->s.distance[i], .pdf_sa = l->s.pdf_sa[i],
-        .emission = l->emission[i], .delta = l->delta >> i & 1, .late = l->late >> i & 1,
-        .p = wide3_lane(&l->s.p, i), .p_error = wide3_lane(&l->s.p_error, i),
-        .n = wide3_lane(&l->s.n, i)};
+void world_sample_far(const struct world *w, int groups, const wide u[][2],
+                      struct light_samples s[], wide_mask lit[]) {
+    const struct world_light *l = &w->lights[0];
+    const struct wide3 anywhere = {0};
+    if (l->type->sample_groups)
+        l->type->sample_groups(l->data, groups, u, s, lit);
+    else
+        for (int g = 0; g < groups; g++)
+            lit[g] = l->type->sample_wide(l->data, &anywhere, u[g], &s[g]);
 }
 
 void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,

@@ -18,8 +18,10 @@ uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struc
 
 // Whether the samples do not depend on the place: there is one light, infinitely far away.
 bool world_lights_are_far(const struct world *w);
-// The sample of one lane.
-struct light_sample light_lanes_at(const struct light_lanes *l, int i);
+// Then those of LIGHT_GROUPS groups of lanes at most, but not p, p_error and n, which are zero. lit: the
+// lanes that the light may light.
+void world_sample_far(const struct world *w, int groups, const wide u[][2],
+                      struct light_samples s[], wide_mask lit[]);
 
 // Shadow rays from surfaces to those samples; t from 0 to *tmax.
 void world_shadow_rays(const struct surfaces *s, const struct light_samples *l, struct wide3 *o,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The entry that cdf_nodes finds is that of a walk along the sums, for one number and for one a lane,
+// The entry that cdf_nodes finds is that of a walk along the sums, for one number and for many,
 // around the counts at which a level begins and with entries of no weight.
 #include "check.h"
 #include "math/cdf_nodes.h"
@@ -37,13 +37,13 @@ static void check_count_of(int count) {
     fill(&n, count, &rng);
     for (int k = 0; k < NUMBERS / count + 2; k++) {
         uint32_t row[WIDE_LANES], found[WIDE_LANES];
-        wide u;
+        float u[WIDE_LANES];
         for (int i = 0; i < WIDE_LANES; i++) {
             row[i] = rng_u32(&rng) % ROWS;
             const float edge = cdf_nodes_row(&n, row[i])[rng_u32(&rng) % (uint32_t)count];
             u[i] = i % 2 && edge < 1 ? edge : rng_float(&rng);
         }
-        cdf_nodes_find_wide(&n, row, u, found);
+        cdf_nodes_find_all(&n, WIDE_LANES, row, u, found);
         for (int i = 0; i < WIDE_LANES; i++) {
             const uint32_t right = walk(cdf_nodes_row(&n, row[i]), count, u[i]);
             wrong += found[i] != right || cdf_nodes_find(&n, row[i], u[i]) != right;
