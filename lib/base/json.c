@@ -236,7 +236,7 @@ bool json_write(const struct json *root, const char *path) {
 
 struct json *json_parse(const char *text, size_t size, const char *path) {
     json_error_t e;
-    json_t *v = json_loadb(text, size, 0, &e);
+    json_t *v = json_loadb(text, size, JSON_REJECT_DUPLICATES, &e);
     if (!v)
         log_error_at((struct where){path, e.line}, "is not valid JSON: %s", e.text);
     return (struct json *)v;

@@ -38,7 +38,7 @@ char *json_to_text(const struct json *root);
 // Atomic; false after an error message.
 bool json_write(const struct json *root, const char *path);
 
-// The value a text of `size` bytes holds; NULL after an error message that names `path` and line.
+// The value a text of `size` bytes holds, no name twice in one object; NULL after an error message that names `path` and line.
 struct json *json_parse(const char *text, size_t size, const char *path);
 
 // Looking into a value: none of these reports errors; NULL and a wrong kind of value are fine, and

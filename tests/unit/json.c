@@ -74,6 +74,11 @@ static void broken_text_is_refused_with_its_line(void) {
     CHECK(!json_parse(broken[2], strlen(broken[2]), "broken.json"));
     capture_end();
     CHECK(captured_has("broken.json:3"));
+    static const char twice[] = "{\"a\": 1,\n\"a\": 2}"; // which of them is meant?
+    capture_begin();
+    CHECK(!json_parse(twice, sizeof twice - 1, "twice.json"));
+    capture_end();
+    CHECK(captured_has("twice.json:2") && captured_has("duplicate") && captured_has("\"a\""));
     char deep[100001]; // a stack of brackets must not overflow ours
     memset(deep, '[', sizeof deep - 1);
     capture_begin();
