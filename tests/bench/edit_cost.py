@@ -29,6 +29,13 @@ def run(*command):
     return out
 
 
+def fresh(folder, name):
+    """A path where nothing stands: freeing the disk of an earlier half gigabyte is no part of either's work."""
+    path = pathlib.Path(folder, name)
+    path.unlink(missing_ok=True)
+    return str(path)
+
+
 def session(relume, tensor, folder):
     """Seconds of freezing and of a frame of a session, bytes of a frame, bytes a second the machine reads."""
     script = folder + "/session.json"
@@ -60,8 +67,8 @@ def main():
         same = ["--size", size, "--spp", spp, "--sampler", "sobol", "--quiet", "--json"]
         ratios, processor, plain, tensor = [], [], [], []
         for _ in range(pairs):
-            a = run(relume, "render", scene, "-o", folder + "/a.exr", "--max-depth", "5", *same)
-            b = run(relume, "precompute", "edit", scene, "-o", folder + "/b.safetensors", *edit,
+            a = run(relume, "render", scene, "-o", fresh(folder, "a.exr"), "--max-depth", "5", *same)
+            b = run(relume, "precompute", "edit", scene, "-o", fresh(folder, "b.safetensors"), *edit,
                     "--bounces", "4", "--series", "64,1,1,1", "--tail", "none",
                     "--later", later, *same)
             plain.append(a["paths"] / a["seconds"])
