@@ -8,7 +8,8 @@
 #include <stddef.h>
 
 // Zeroed memory for `count` objects of `size` bytes, 64-byte aligned; free with mem_free.
-// count * size == 0 gives a valid pointer. Overflow of the product aborts.
+// count * size == 0 gives a valid pointer. Overflow of the product aborts. Behind the end a byte at
+// least, and what is left of 64, may be read: four bytes behind numbers of four.
 #define mem_array(count, size) mem_array_at((count), (size), __FILE__, __LINE__)
 void *mem_array_at(size_t count, size_t size, const char *file, int line);
 void mem_free(void *p); // NULL is fine

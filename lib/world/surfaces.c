@@ -13,19 +13,17 @@ static struct wide3 gather_positions(const struct world_shape *const shapes[WIDE
     return (struct wide3){v[0], v[1], v[2]};
 }
 
-// The interpolated vertex normals; zero where a mesh has none.
+// The normal at corner k; zero where a mesh has none. The float behind the last one is read, as
+// mem_array allows.
 static struct wide3 gather_normals(const struct world_shape *const shapes[WIDE_LANES],
-                                   const uint32_t *const indices[WIDE_LANES], const wide b[3]) {
-    float n[3][3][WIDE_LANES] = {0};
+                                   const uint32_t *const indices[WIDE_LANES], int k) {
+    static const float none[4] = {0};
+    const float *row[WIDE_LANES];
+    wide v[4];
     for (int i = 0; i < WIDE_LANES; i++)
-        for (int k = 0; shapes[i]->normals && k < 3; k++)
-            for (int c = 0; c < 3; c++)
-                n[k][c][i] = shapes[i]->normals[indices[i][k]][c];
-    struct wide3 sum;
-    wide *const axis[3] = {&sum.x, &sum.y, &sum.z};
-    for (int c = 0; c < 3; c++)
-        *axis[c] = b[0] * wide_load(n[0][c]) + b[1] * wide_load(n[1][c]) + b[2] * wide_load(n[2][c]);
-    return wide_normalize(sum);
+        row[i] = shapes[i]->normals ? shapes[i]->normals[indices[i][k]] : none;
+    wide_gather4(row, v);
+    return (struct wide3){v[0], v[1], v[2]};
 }
 
 void world_surfaces(const struct world *w, const struct accel_hit *const hits[WIDE_LANES],
@@ -54,8 +52,10 @@ void world_surfaces(const struct world *w, const struct accel_hit *const hits[WI
     s->ng = wide_normalize(wide_cross(e1, e2));
     struct wide3 n = s->ng;
     if (smooth) {
-        const wide b[3] = {b0, b1, b2};
-        const struct wide3 ns = gather_normals(shapes, indices, b);
+        const struct wide3 n0 = wide3_scale(b0, gather_normals(shapes, indices, 0));
+        const struct wide3 n1 = wide3_scale(b1, gather_normals(shapes, indices, 1));
+        const struct wide3 n2 = wide3_scale(b2, gather_normals(shapes, indices, 2));
+        const struct wide3 ns = wide_normalize(wide3_add(wide3_add(n0, n1), n2));
         n = wide3_select(wide_dot(ns, ns) > 0, ns, n);
     }
     const wide_mask flip = wide_mask_of(flipped);
