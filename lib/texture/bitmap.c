@@ -247,12 +247,35 @@ struct quad {
     float wx, wy;
 };
 
+static size_t bytes_of_texel(const struct bitmap *self) {
+    const size_t number = self->storage == STORE_U8 ? 1 : self->storage == STORE_HALF ? 2 : 4;
+    return number * (size_t)self->channels;
+}
+
+// In pixels, from the middle of the first.
+static struct vec2 place_of(const struct bitmap *self, struct vec2 uv) {
+    return (struct vec2){tame(self->wrap, uv.x) * (float)self->width - 0.5f,
+                         tame(self->wrap, uv.y) * (float)self->height - 0.5f};
+}
+
+// Both rows of the four pixels; what lies across an edge of the picture is not sent for.
+static void send_for(const void *data, const struct texture_point *at) {
+    const struct bitmap *self = data;
+    const struct vec2 place = place_of(self, uv_apply(&self->uv, at->uv));
+    const int x = (int)clampf(place.x, 0, (float)(self->width - 1));
+    const int y = (int)clampf(place.y, 0, (float)(self->height - 1));
+    const size_t bytes = bytes_of_texel(self), row = bytes * (size_t)self->width;
+    const char *texel = (const char *)self->texels + (size_t)y * row + (size_t)x * bytes;
+    __builtin_prefetch(texel);
+    if (y + 1 < self->height)
+        __builtin_prefetch(texel + row);
+}
+
 static struct quad fetch_quad(const struct bitmap *self, struct vec2 uv) {
-    const float x = tame(self->wrap, uv.x) * (float)self->width - 0.5f;
-    const float y = tame(self->wrap, uv.y) * (float)self->height - 0.5f;
-    const float fx = floorf(x), fy = floorf(y);
+    const struct vec2 place = place_of(self, uv);
+    const float fx = floorf(place.x), fy = floorf(place.y);
     const int ix = (int)fx, iy = (int)fy;
-    struct quad q = {.wx = x - fx, .wy = y - fy};
+    struct quad q = {.wx = place.x - fx, .wy = place.y - fy};
     if (ix >= 0 && iy >= 0 && ix + 1 < self->width && iy + 1 < self->height) {
         for (int j = 0; j < 2; j++)
             for (int i = 0; i < 2; i++)
@@ -301,5 +324,5 @@ static void size(const void *data, int *width, int *height) {
 const struct texture_type texture_bitmap = {
     .entry = {.name = "bitmap", .help = "a picture", .params = params,
               .size = sizeof(struct bitmap)},
-    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean, .size = size, .finish = finish,
+    .prepare = prepare, .eval = eval, .send_for = send_for, .gradient = gradient, .mean = mean, .size = size, .finish = finish,
 };

@@ -29,6 +29,8 @@ struct texture_type {
     // until finish. false after an error message.
     bool (*prepare)(struct object *self, struct arena *arena);
     spectrum (*eval)(const void *data, const struct texture_point *at);
+    // Sends for what eval will read there. NULL: it is little.
+    void (*send_for)(const void *data, const struct texture_point *at);
     // Gradient of the luminance with respect to (u, v), for bump maps. NULL: by finite differences.
     struct vec2 (*gradient)(const void *data, const struct texture_point *at);
     // Mean over the unit square, for sampling decisions and previews.
