@@ -290,6 +290,8 @@ static void find_hits(struct trace_context *ctx, const struct lane *lanes, const
     for (int i = 0; ctx->world->hides && i < p->count; i++)
         if (lanes[p->lanes[i]].from.depth == 0)
             world_see(ctx->world, &lanes[p->lanes[i]].ray, &hits[p->lanes[i]]);
+    for (int i = 0; i < p->count; i++)
+        world_prefetch_indices(ctx->world, &hits[p->lanes[i]]);
 }
 
 // Lanes by the kind of their material; 0: those that are shaded one by one.
@@ -337,10 +339,12 @@ static void shade_all(const struct path *p, struct trace_context *ctx, struct wa
         const uint16_t i = w->alive[k];
         struct lane *l = &w->lanes[i];
         l->shadow.pending = false;
-        if (step->hits[i].shape == SCENE_NONE)
+        if (step->hits[i].shape == SCENE_NONE) {
             leave_scene(p, ctx, l);
-        else
-            add_lane(&kinds, path_wide_kind(ctx, l, &step->hits[i]), i);
+            continue;
+        }
+        add_lane(&kinds, path_wide_kind(ctx, l, &step->hits[i]), i);
+        world_prefetch_corners(ctx->world, &step->hits[i]);
     }
     for (uint32_t kind = 1; kind < ctx->world->wide_kind_count; kind++)
         shade_kind(p, ctx, w, step, kind, &kinds);

@@ -114,6 +114,26 @@ static inline bool world_links(const struct world *w, uint32_t light, uint32_t s
     return !dark || shape == SCENE_NONE || !dark[shape];
 }
 
+// Sends for what the surface of a hit will need of memory: first its triangle's indices, then, once they
+// have arrived, its corners, but texture coordinates only where many lanes look textures up.
+static inline void world_prefetch_indices(const struct world *w, const struct accel_hit *hit) {
+    if (hit->shape == SCENE_NONE || w->shapes[hit->shape].kind != SHAPE_MESH)
+        return;
+    __builtin_prefetch(w->shapes[hit->shape].indices[hit->primitive]);
+}
+
+static inline void world_prefetch_corners(const struct world *w, const struct accel_hit *hit) {
+    const struct world_shape *s = &w->shapes[hit->shape];
+    for (int k = 0; s->kind == SHAPE_MESH && k < 3; k++) {
+        const uint32_t i = s->indices[hit->primitive][k];
+        __builtin_prefetch(s->positions[i]);
+        if (s->normals)
+            __builtin_prefetch(s->normals[i]);
+        if (s->textured && s->uvs)
+            __builtin_prefetch(s->uvs[i]);
+    }
+}
+
 // Takes the hit of a ray of the sensor on to the first surface that is not hidden from it. Distances
 // stay those from the ray's origin. Only where w->hides.
 void world_see(const struct world *w, const struct ray *ray, struct accel_hit *hit);
