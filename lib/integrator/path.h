@@ -75,6 +75,8 @@ struct lane_state {
     wide_uint events;
 };
 
+// Four numbers of each lane, at an offset in struct lane.
+void path_gather(struct lane *const lane[WIDE_LANES], size_t offset, wide f[4]);
 void path_gather_state(struct lane *const lane[WIDE_LANES], struct lane_state *out);
 void path_draw(struct lane *const lane[WIDE_LANES], const struct lane_state *s, uint32_t purpose,
                wide u[2]);
@@ -99,6 +101,11 @@ struct light_sample path_light_ahead(const struct world *w, const struct light_a
 uint32_t path_lights_ahead(const struct world *w, const struct light_ahead *const l[WIDE_LANES],
                            uint32_t wanted, struct light_lanes *out);
 
+void path_leave_scene(const struct path *p, struct trace_context *ctx, struct lane *l);
+// One vertex: emission found, light sampled, direction chosen. ahead: the light sample, NULL where it
+// is not known.
+void path_shade_surface(const struct path *p, struct trace_context *ctx, struct lane *l,
+                        const struct surface *s, const struct light_ahead *ahead);
 // One vertex of a packet's lanes, WIDE_LANES at most, whose materials are of this kind: the same as
 // one by one, with the same bits.
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// path.c's vertex for WIDE_LANES paths that met triangles whose materials are of one kind, stage by
+// path_vertex.c's vertex for WIDE_LANES paths that met triangles whose materials are of one kind, stage by
 // stage: the operations of vertex.c, lane by lane. Emission that is found, which few lanes need,
 // goes through the function for one.
 #include "integrator/path.h"
@@ -33,32 +33,13 @@ struct shading {
     struct wide_closures closures;
 };
 
-// Four numbers of each lane, at an offset in struct lane.
-static void gather(struct lane *const lane[WIDE_LANES], size_t offset, wide f[4]) {
-    const float *row[WIDE_LANES];
-    for (int i = 0; i < WIDE_LANES; i++)
-        row[i] = (const float *)(const void *)((const char *)lane[i] + offset);
-    wide_gather4(row, f);
-}
-
-void path_gather_state(struct lane *const lane[WIDE_LANES], struct lane_state *out) {
-    wide f[4];
-    gather(lane, offsetof(struct lane, sampler.seed), f); // seed, index, count, dimension
-    out->sampler.seed = (wide_uint)f[0];
-    out->sampler.index = (wide_uint)f[1];
-    gather(lane, offsetof(struct lane, sampler.reversed), f); // reversed, padding, scale, events
-    out->sampler.reversed = (wide_uint)f[0];
-    out->scale = f[2];
-    out->events = (wide_uint)f[3];
-}
-
 static void gather_lanes(struct vertices *v) {
     wide f[4];
-    gather(v->lane, offsetof(struct lane, ray.d), f);
+    path_gather(v->lane, offsetof(struct lane, ray.d), f);
     v->d = (struct wide3){f[0], f[1], f[2]};
-    gather(v->lane, offsetof(struct lane, beta), f);
+    path_gather(v->lane, offsetof(struct lane, beta), f);
     v->beta = (struct wide3){f[0], f[1], f[2]};
-    gather(v->lane, offsetof(struct lane, from.pdf_sa), f); // pdf_sa, delta, depth, lobe
+    path_gather(v->lane, offsetof(struct lane, from.pdf_sa), f); // pdf_sa, delta, depth, lobe
     v->depth = (wide_uint)f[2];
     v->lobe = (wide_uint)f[3];
     path_gather_state(v->lane, &v->state);
@@ -76,24 +57,6 @@ static void gather_materials(const struct world *w, struct vertices *v,
             points->at[i] = world_texture_point(shape, v->hit[i]);
     }
     v->two_sided = wide_mask_of(two_sided);
-}
-
-void path_draw(struct lane *const lane[WIDE_LANES], const struct lane_state *state, uint32_t purpose,
-               wide u[2]) {
-    const bool pair = purpose == DRAW_LIGHT_POINT || purpose == DRAW_DIRECTION;
-    const wide_uint dimension = CAMERA_DIMENSIONS + VERTEX_DIMENSIONS * state->events + purpose;
-    const struct sampler_type *type = lane[0]->sampler.type;
-    if (type->draw_wide) {
-        type->draw_wide(&state->sampler, dimension, u);
-        return;
-    }
-    for (int i = 0; i < WIDE_LANES; i++) {
-        struct sampler s = lane[i]->sampler;
-        s.dimension = dimension[i];
-        const struct vec2 one = pair ? sampler_2d(&s) : (struct vec2){sampler_1d(&s), 0};
-        u[0][i] = one.x;
-        u[1][i] = one.y;
-    }
 }
 
 static void draw(const struct vertices *v, uint32_t purpose, wide u[2]) {
@@ -163,7 +126,7 @@ static uint32_t sample_lights(const struct world *w, const struct vertices *v, u
     return world_sample_lights(w, wanted, &at->s.p, &at->side, choice[0], u, out);
 }
 
-// vertex_sample_light and path.c's sample_light: leaves shadow tests pending.
+// vertex_sample_light and path_vertex.c's sample_light: leaves shadow tests pending.
 static void light(const struct path *p, struct trace_context *ctx, struct vertices *v,
                   uint32_t wanted, const struct shading *at) {
     struct light_lanes l;
@@ -226,7 +189,7 @@ static uint32_t survive(const struct path *p, const struct vertices *v, uint32_t
     return alive & wide_bits(~plays | (u[0] < q));
 }
 
-// closure_sample and path.c's scatter.
+// closure_sample and path_vertex.c's scatter.
 static uint32_t scatter(const struct path *p, struct vertices *v, uint32_t wanted,
                         const struct shading *at) {
     wide u[2], choice[2] = {{0}, {0}};
