@@ -21,6 +21,10 @@ static const struct param params[] = {
     {"strict_normals", PARAM_BOOL, offsetof(struct path, strict_normals), .def = "false",
      .unit = "", .help = "drop directions on which shading and geometric normal disagree"},
     INTEGRATOR_LIGHT_CHOICE(struct path, light_choice),
+    {"light_candidates", PARAM_INT, offsetof(struct path, light_candidates), .def = "0", .min = 0,
+     .max = MOST_CANDIDATES, .unit = "",
+     .help = "light samples of which a glossy surface traces one, by what they would bring; 0: 3 where "
+             "a sky is the only light, else 1"},
     INTEGRATOR_IGNORED,
     PARAM_END,
 };
@@ -185,11 +189,11 @@ static void add_lane(struct kinds *k, uint32_t kind, uint16_t lane) {
 
 static void shade_alone(const struct path *p, struct trace_context *ctx, struct wave *w,
                         const struct step *step, uint16_t lane) {
-    const struct light_ahead *ahead = &step->lights[lane];
+    const struct lights_ahead ahead = path_lights_of(step, lane);
     struct lane *l = &w->lanes[lane];
     struct surface s;
     world_surface(ctx->world, &l->ray, &step->hits[lane], &s);
-    path_shade_surface(p, ctx, l, &s, step->ahead && ahead->pdf_sa >= 0 ? ahead : NULL);
+    path_shade_surface(p, ctx, l, &s, step->ahead && ahead.first->pdf_sa >= 0 ? &ahead : NULL);
 }
 
 static void shade_kind(const struct path *p, struct trace_context *ctx, struct wave *w,
@@ -294,7 +298,7 @@ static void advance(const struct path *p, struct trace_context *ctx, struct wave
     }
     if (camera)
         share_first_hits(w, paths_of_sample(p, ctx), step.hits);
-    path_sample_ahead(p, ctx->world, w->lanes, w->alive, w->count, &step);
+    path_sample_ahead(p, ctx, w->lanes, w->alive, w->count, &step);
     shade_all(p, ctx, w, &step);
     settle(ctx, w, camera);
 }

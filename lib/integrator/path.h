@@ -2,13 +2,14 @@
 // What the path tracer keeps of its paths, and the shading of many at once.
 #pragma once
 
+#include "integrator/candidates.h"
 #include "integrator/vertex.h"
 #include "world/light_lanes.h"
 
 struct path {
     int max_depth, rr_depth, shading_samples;
     bool hide_emitters, strict_normals;
-    int light_choice;
+    int light_choice, light_candidates;
 };
 
 // Dimensions of the random numbers: those of the camera, then so many for each vertex, whether or
@@ -21,6 +22,7 @@ enum {
     DRAW_LIGHT = 4,
     DRAW_LOBE = 5,
     DRAW_ROULETTE = 6,
+    DRAW_CANDIDATE = 7,
 };
 
 enum {
@@ -92,20 +94,44 @@ struct step {
     struct accel_hit hits[MOST_LANES];
     bool ahead; // whether light samples do not depend on the place, and are taken first
     struct light_ahead lights[MOST_LANES];
+    struct light_ahead more[MOST_LANES][MOST_CANDIDATES - 1]; // where the material may be glossy
 };
 
+// The samples that were taken ahead for a lane.
+struct lights_ahead {
+    const struct light_ahead *first, *more;
+};
+
+static inline struct lights_ahead path_lights_of(const struct step *s, uint32_t lane) {
+    return (struct lights_ahead){&s->lights[lane], s->more[lane]};
+}
+
+static inline const struct light_ahead *path_candidate(struct lights_ahead l, uint32_t k) {
+    return k ? &l.more[k - 1] : l.first;
+}
+
+// How many light samples a vertex with these lobes chooses from.
+static inline uint32_t path_candidates(const struct path *p, const struct trace_context *ctx,
+                                       uint32_t lobes) {
+    if (!(lobes & LOBE_GLOSSY) || !ctx->sink->sums)
+        return 1;
+    if (p->light_candidates > 0)
+        return (uint32_t)p->light_candidates;
+    return world_has_only_a_sky(ctx->world) ? CANDIDATES_OF_A_SKY : 1;
+}
+
 // Takes the light samples of the lanes listed: those of world_sample_lights.
-void path_sample_ahead(const struct path *p, const struct world *w, struct lane *lanes,
+void path_sample_ahead(const struct path *p, const struct trace_context *ctx, struct lane *lanes,
                        const uint16_t *list, uint32_t count, struct step *step);
 struct light_sample path_light_ahead(const struct world *w, const struct light_ahead *l);
 uint32_t path_lights_ahead(const struct world *w, const struct light_ahead *const l[WIDE_LANES],
                            uint32_t wanted, struct light_lanes *out);
 
 void path_leave_scene(const struct path *p, struct trace_context *ctx, struct lane *l);
-// One vertex: emission found, light sampled, direction chosen. ahead: the light sample, NULL where it
-// is not known.
+// One vertex: emission found, light sampled, direction chosen. ahead: the light samples, NULL where
+// they are not known.
 void path_shade_surface(const struct path *p, struct trace_context *ctx, struct lane *l,
-                        const struct surface *s, const struct light_ahead *ahead);
+                        const struct surface *s, const struct lights_ahead *ahead);
 // One vertex of a packet's lanes, WIDE_LANES at most, whose materials are of this kind: the same as
 // one by one, with the same bits.
 void path_shade_wide(const struct path *p, struct trace_context *ctx, struct lane *lanes,

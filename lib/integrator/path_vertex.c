@@ -64,37 +64,71 @@ static void scatter(const struct path *p, struct lane *l, const struct surface *
         survive_roulette(p, l);
 }
 
-static void sample_one_light(struct trace_context *ctx, struct lane *l, const struct surface *s,
-                             const struct closure *closure, vec3 side) {
-    const float choice = ctx->world->choice.draws ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
-    const struct vec2 point = sampler_2d(draw(l, DRAW_LIGHT_POINT));
-    vertex_sample_light(ctx, s, closure, side, choice, point, 1, &l->shadow);
+// Light sample k of so many: what it would bring to the vertex.
+static void sample_candidate(const struct path *p, struct trace_context *ctx, struct lane *l,
+                             const struct surface *s, const struct closure *closure, vec3 side,
+                             const struct lights_ahead *ahead, uint32_t k, uint32_t count,
+                             struct shadow_test *test) {
+    const struct candidate_shift shift = candidate_shift(k, count);
+    test->pending = false;
+    if (!ahead) {
+        float choice = ctx->world->choice.draws ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
+        struct vec2 point = sampler_2d(draw(l, DRAW_LIGHT_POINT));
+        choice = candidate_number(choice, shift.choice);
+        point = (struct vec2){candidate_number(point.x, shift.x), candidate_number(point.y, shift.y)};
+        vertex_sample_light(ctx, s, closure, side, choice, point, 1, test);
+    } else if (path_candidate(*ahead, k)->pdf_sa > 0) {
+        const struct light_sample one = path_light_ahead(ctx->world, path_candidate(*ahead, k));
+        vertex_test_light(ctx, s, closure, 0, &one, 1, test);
+    }
+    if (!test->pending || !p->strict_normals)
+        return;
+    const vec3 wi = test->contribution.wi;
+    test->pending = same_side(s, wi, to_local(&s->point.frame, wi));
 }
 
-// Next event estimation: leaves a shadow test pending. ahead: the sample, NULL where it is not known.
+// Leaves in l->shadow the candidate that is to be traced, standing for all.
+static void choose_candidate(const struct path *p, struct trace_context *ctx, struct lane *l,
+                             const struct surface *s, const struct closure *closure, vec3 side,
+                             const struct lights_ahead *ahead, uint32_t count) {
+    struct shadow_test *kept = &l->shadow, one;
+    struct candidates_seen seen = {0, sampler_1d(draw(l, DRAW_CANDIDATE))};
+    float of_kept = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        sample_candidate(p, ctx, l, s, closure, side, ahead, k, count, &one);
+        const float value = one.pending ? shadow_test_value(&one) : 0;
+        if (!candidate_takes(&seen, value))
+            continue;
+        *kept = one;
+        of_kept = value;
+    }
+    kept->pending = of_kept > 0;
+    if (kept->pending)
+        kept->contribution.weight *= seen.sum / (of_kept * (float)count);
+}
+
+// Next event estimation: leaves a shadow test pending.
 static void sample_light(const struct path *p, struct trace_context *ctx, struct lane *l,
                          const struct surface *s, const struct closure *closure, vec3 side,
-                         const struct light_ahead *ahead) {
-    if (!ahead)
-        sample_one_light(ctx, l, s, closure, side);
-    else if (ahead->pdf_sa > 0) {
-        const struct light_sample one = path_light_ahead(ctx->world, ahead);
-        vertex_test_light(ctx, s, closure, 0, &one, 1, &l->shadow);
-    }
-    struct contribution *c = &l->shadow.contribution;
-    if (!l->shadow.pending)
+                         const struct lights_ahead *ahead) {
+    const uint32_t count = path_candidates(p, ctx, closure->lobes);
+    struct shadow_test *kept = &l->shadow;
+    if (count > 1)
+        choose_candidate(p, ctx, l, s, closure, side, ahead, count);
+    else
+        sample_candidate(p, ctx, l, s, closure, side, ahead, 0, 1, kept);
+    if (!kept->pending)
         return;
+    struct contribution *c = &kept->contribution;
     if (p->max_depth >= 0)
-        l->shadow.most_passes = p->max_depth - 2 - (int)l->events;
-    if (p->strict_normals && !same_side(s, c->wi, to_local(&s->point.frame, c->wi)))
-        l->shadow.pending = false;
+        kept->most_passes = p->max_depth - 2 - (int)l->events;
     c->weight *= l->beta;
     c->depth = l->from.depth + 1;
     c->lobe = l->from.depth ? l->from.lobe : closure->lobes;
 }
 
 void path_shade_surface(const struct path *p, struct trace_context *ctx, struct lane *l,
-                        const struct surface *s, const struct light_ahead *ahead) {
+                        const struct surface *s, const struct lights_ahead *ahead) {
     struct bsdf_sample b = {.lobe = 0};
     if (l->from.depth > 0 || !p->hide_emitters)
         vertex_add_emission(ctx, l->sample, s, l->ray.d, l->beta, &l->from);

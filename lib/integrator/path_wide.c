@@ -14,7 +14,7 @@ struct vertices {
     uint32_t active;
     struct lane *lane[WIDE_LANES], *to[WIDE_LANES]; // to read, to write
     const struct accel_hit *hit[WIDE_LANES];
-    const struct light_ahead *ahead[WIDE_LANES];
+    struct lights_ahead ahead[WIDE_LANES];
     bool has_ahead;
     struct lane spare;
     struct wide3 d, beta;
@@ -117,51 +117,134 @@ static struct wide3 into_frame(const struct shading *at, struct wide3 w) {
     return local;
 }
 
+// Light samples of the lanes, and what they bring before the path's own throughput.
+struct lit {
+    uint32_t lanes; // those that are lit
+    struct light_lanes l;
+    struct wide3 weight;
+};
+
+static uint32_t sample_ahead(const struct world *w, const struct vertices *v, uint32_t wanted,
+                             uint32_t k, struct light_lanes *out) {
+    const struct light_ahead *ahead[WIDE_LANES];
+    for (int i = 0; i < WIDE_LANES; i++)
+        ahead[i] = path_candidate(v->ahead[i], k);
+    return path_lights_ahead(w, ahead, wanted, out);
+}
+
 static uint32_t sample_lights(const struct world *w, const struct vertices *v, uint32_t wanted,
-                              const struct shading *at, struct light_lanes *out) {
+                              const struct shading *at, struct candidate_shift shift,
+                              struct light_lanes *out) {
     wide u[2], choice[2] = {{0}, {0}};
     draw(v, DRAW_LIGHT_POINT, u);
+    u[0] = candidate_numbers(u[0], shift.x);
+    u[1] = candidate_numbers(u[1], shift.y);
     if (w->choice.draws)
         draw(v, DRAW_LIGHT, choice);
-    return world_sample_lights(w, wanted, &at->s.p, &at->side, choice[0], u, out);
+    return world_sample_lights(w, wanted, &at->s.p, &at->side,
+                               candidate_numbers(choice[0], shift.choice), u, out);
+}
+
+// path_vertex.c's sample_candidate
+static void sample_candidate(const struct path *p, const struct world *w, const struct vertices *v,
+                             uint32_t wanted, const struct shading *at, uint32_t k, uint32_t count,
+                             struct lit *out) {
+    struct light_lanes *l = &out->l;
+    wide pdf;
+    out->lanes = v->has_ahead ? sample_ahead(w, v, wanted, k, l)
+                              : sample_lights(w, v, wanted, at, candidate_shift(k, count), l);
+    if (!out->lanes)
+        return;
+    const struct wide3 wi = into_frame(at, l->s.wi);
+    const struct wide3 f = v->kind->eval(&at->closures, &wi, &pdf);
+    const wide share =
+        wide_select(wide_mask_of(l->delta), wide_of(1), mis_weights(l->s.pdf_sa, pdf));
+    const wide scale = share / l->s.pdf_sa;
+    out->lanes &= ~wide_bits(wide_is_black(f));
+    for (uint32_t left = w->links ? out->lanes : 0; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        if (!world_links(w, l->light[i], v->hit[i]->shape))
+            out->lanes &= ~(1u << i);
+    }
+    if (p->strict_normals)
+        out->lanes &= wide_bits(wide_dot(l->s.wi, at->s.ng) * wide_dot(l->s.wi, at->s.frame.n) > 0);
+    out->weight = (struct wide3){f.x * scale, f.y * scale, f.z * scale};
+}
+
+// shadow_test_value; 0 in lanes that are not lit.
+static wide value_of(const struct lit *c) {
+    const float *row[WIDE_LANES];
+    const wide none = {0}, density = c->l.s.pdf_sa;
+    const wide_mask late = wide_mask_of(c->l.late);
+    wide e[4];
+    for (int i = 0; i < WIDE_LANES; i++)
+        row[i] = (const float *)(const void *)&c->l.emission[i];
+    wide_gather4(row, e);
+    for (int k = 0; k < 3; k++)
+        e[k] = wide_select(late, density, e[k]);
+    const wide value = 0.212671f * (c->weight.x * e[0]) + 0.715160f * (c->weight.y * e[1]) +
+                       0.072169f * (c->weight.z * e[2]);
+    return wide_select(wide_mask_of(c->lanes), value, none);
+}
+
+static void keep_candidates(wide_mask takes, const struct lit *from, struct lit *to) {
+    light_lanes_merge(wide_bits(takes), &from->l, &to->l);
+    to->weight = wide3_select(takes, from->weight, to->weight);
+}
+
+// path_vertex.c's sample_light, as far as the sample and its weight go.
+static void choose_candidates(const struct path *p, const struct trace_context *ctx,
+                              const struct vertices *v, uint32_t wanted, const struct shading *at,
+                              struct lit *kept) {
+    const uint32_t count = path_candidates(p, ctx, v->kind->lobes);
+    struct candidates_seen_wide seen = {{0}, {0}};
+    struct lit one;
+    wide u[2];
+    sample_candidate(p, ctx->world, v, wanted, at, 0, count, kept);
+    if (count == 1)
+        return;
+    draw(v, DRAW_CANDIDATE, u);
+    seen.u = u[0];
+    wide of_kept = kept->lanes ? value_of(kept) : wide_of(0);
+    candidates_take(&seen, of_kept);
+    for (uint32_t k = 1; k < count; k++) {
+        sample_candidate(p, ctx->world, v, wanted, at, k, count, &one);
+        if (!one.lanes)
+            continue;
+        const wide value = value_of(&one);
+        const wide_mask takes = candidates_take(&seen, value);
+        keep_candidates(takes, &one, kept);
+        of_kept = wide_select(takes, value, of_kept);
+    }
+    const wide factor = seen.sum / (of_kept * (float)count);
+    kept->weight = (struct wide3){kept->weight.x * factor, kept->weight.y * factor,
+                                  kept->weight.z * factor};
+    kept->lanes = wide_bits(of_kept > 0);
 }
 
 // vertex_sample_light and path_vertex.c's sample_light: leaves shadow tests pending.
 static void light(const struct path *p, struct trace_context *ctx, struct vertices *v,
                   uint32_t wanted, const struct shading *at) {
-    struct light_lanes l;
-    wide pdf, tmax;
+    struct lit kept;
+    wide tmax;
     struct wide3 o, d;
-    uint32_t lit = v->has_ahead ? path_lights_ahead(ctx->world, v->ahead, wanted, &l)
-                                : sample_lights(ctx->world, v, wanted, at, &l);
-    if (!lit)
+    choose_candidates(p, ctx, v, wanted, at, &kept);
+    if (!kept.lanes)
         return;
-    const struct wide3 wi = into_frame(at, l.s.wi);
-    const struct wide3 f = v->kind->eval(&at->closures, &wi, &pdf);
-    const wide share = wide_select(wide_mask_of(l.delta), wide_of(1), mis_weights(l.s.pdf_sa, pdf));
-    const wide scale = share / l.s.pdf_sa;
-    lit &= ~wide_bits(wide_is_black(f));
-    for (uint32_t left = ctx->world->links ? lit : 0; left; left &= left - 1) {
-        const int i = __builtin_ctz(left);
-        if (!world_links(ctx->world, l.light[i], v->hit[i]->shape))
-            lit &= ~(1u << i);
-    }
-    if (p->strict_normals)
-        lit &= wide_bits(wide_dot(l.s.wi, at->s.ng) * wide_dot(l.s.wi, at->s.frame.n) > 0);
-    const struct wide3 weight = {f.x * scale * v->beta.x, f.y * scale * v->beta.y,
-                                 f.z * scale * v->beta.z};
-    world_shadow_rays(&at->s, &l.s, &o, &d, &tmax);
+    const struct wide3 weight = {kept.weight.x * v->beta.x, kept.weight.y * v->beta.y,
+                                 kept.weight.z * v->beta.z};
+    world_shadow_rays(&at->s, &kept.l.s, &o, &d, &tmax);
     scatter3(v, offsetof(struct lane, shadow.ray.o), o);
     scatter3(v, offsetof(struct lane, shadow.ray.d), d);
     scatter3(v, offsetof(struct lane, shadow.contribution.weight), weight);
-    scatter3(v, offsetof(struct lane, shadow.contribution.wi), l.s.wi);
-    for (; lit; lit &= lit - 1) {
+    scatter3(v, offsetof(struct lane, shadow.contribution.wi), kept.l.s.wi);
+    for (uint32_t lit = kept.lanes; lit; lit &= lit - 1) {
         const int i = __builtin_ctz(lit);
         struct lane *to = v->lane[i];
         struct contribution *c = &to->shadow.contribution;
-        c->emission = l.emission[i];
-        c->source = l.light[i];
-        to->shadow.late = l.late >> i & 1;
+        c->emission = kept.l.emission[i];
+        c->source = kept.l.light[i];
+        to->shadow.late = kept.l.late >> i & 1;
         if (!to->shadow.late && spectrum_is_black(c->emission))
             continue;
         c->depth = v->depth[i] + 1;
@@ -234,7 +317,7 @@ static void choose(struct vertices *v, struct lane *lanes, const struct packet *
         v->lane[i] = &lanes[from];
         v->to[i] = i < packet->count ? v->lane[i] : &v->spare;
         v->hit[i] = &step->hits[from];
-        v->ahead[i] = &step->lights[from];
+        v->ahead[i] = path_lights_of(step, from);
     }
 }
 

@@ -62,7 +62,8 @@ void vertex_test_light(struct trace_context *ctx, const struct surface *s,
     if (spectrum_is_black(f) || (!l->late && spectrum_is_black(l->emission)))
         return;
     const float share = l->delta ? 1 : mis_weight(l->pdf_sa, rivals * pdf_bsdf);
-    test->contribution = (struct contribution){.weight = f * (share / l->pdf_sa), .emission = l->emission,
+    const spectrum emission = l->late ? spectrum_grey(l->pdf_sa) : l->emission;
+    test->contribution = (struct contribution){.weight = f * (share / l->pdf_sa), .emission = emission,
                                                .source = light, .sampled = true, .wi = l->wi};
     test->ray = world_shadow_ray(s, l);
     test->most_passes = -1;

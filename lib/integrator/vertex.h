@@ -52,8 +52,13 @@ struct shadow_test {
     struct contribution contribution;
     int most_passes; // straight through surfaces, each an edge of the path; negative: no limit
     bool pending;
-    bool late;       // the emission is still to be asked for
+    bool late;       // the emission is still to be asked for; till then it is taken to follow the density
 };
+
+// The luminance that it brings if nothing is in the way.
+static inline float shadow_test_value(const struct shadow_test *t) {
+    return spectrum_luminance(t->contribution.weight * t->contribution.emission);
+}
 
 // Samples one light from a surface: fills the test, or leaves it not pending. `rivals` is how many
 // material samples there are for each light sample, for MIS; 0: none, and for delta lights. `side`

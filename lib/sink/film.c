@@ -353,7 +353,8 @@ static const struct sink_type view_type = {
 
 struct sink *film_sink(struct film *f) {
     struct film_view *v = mem_array(1, sizeof *v);
-    v->sink = (struct sink){&view_type, f->options.aovs != 0};
+    v->sink = (struct sink){
+        .type = &view_type, .wants_surface = f->options.aovs != 0, .sums = true};
     v->film = f;
     v->sums = mem_array(f->tile_values, sizeof *v->sums);
     v->slots = mem_array((size_t)SINK_MOST_LANES * f->layout.slots, sizeof *v->slots);

@@ -63,7 +63,7 @@ static const struct sink_type view_type = {
 
 struct sink *meters_sink(void *meters) {
     struct view *v = mem_array(1, sizeof *v);
-    v->sink = (struct sink){&view_type, false};
+    v->sink = (struct sink){.type = &view_type, .sums = true};
     v->meters = meters;
     return &v->sink;
 }

@@ -64,6 +64,7 @@ struct sink {
     const struct sink_type *type;
     bool wants_surface; // whether anybody looks at `surface`; it is not called otherwise
     struct chain *chains; // of the lanes, for a response to editable materials; NULL: none is asked
+    bool sums; // what arrives is added up now: light samples may be chosen by what they bring
 };
 
 static inline void sink_add(struct sink *s, int lane, const struct contribution *c) {

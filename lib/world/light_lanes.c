@@ -22,6 +22,17 @@ static void merge(wide_mask m, const struct light_samples *from, struct light_sa
     to->pdf_sa = wide_select(m, from->pdf_sa, to->pdf_sa);
 }
 
+void light_lanes_merge(uint32_t lanes, const struct light_lanes *from, struct light_lanes *to) {
+    merge(wide_mask_of(lanes), &from->s, &to->s);
+    to->delta = (to->delta & ~lanes) | (from->delta & lanes);
+    to->late = (to->late & ~lanes) | (from->late & lanes);
+    for (uint32_t left = lanes; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        to->emission[i] = from->emission[i];
+        to->light[i] = from->light[i];
+    }
+}
+
 static bool is_wide(const struct world_light *l) {
     return l->type->sample_wide && (!l->type->has_wide || l->type->has_wide(l->data));
 }
@@ -135,9 +146,12 @@ uint32_t world_sample_lights(const struct world *w, uint32_t wanted, const struc
                                : sample_chosen(w, wanted, p, u1, u2, out);
 }
 
+bool world_has_only_a_sky(const struct world *w) {
+    return w->light_count == 1 && w->lights[0].type->infinite && !w->lights[0].type->delta;
+}
+
 bool world_lights_are_far(const struct world *w) {
-    return w->light_count == 1 && w->lights[0].type->infinite && !w->lights[0].type->delta &&
-           !w->choice.by_part && is_wide(&w->lights[0]);
+    return world_has_only_a_sky(w) && !w->choice.by_part && is_wide(&w->lights[0]);
 }
 
 void world_sample_far(const struct world *w, int groups, const wide u[][2],

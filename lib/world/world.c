@@ -25,6 +25,7 @@ static void init_shapes(struct world *w, const struct scene *s) {
         const uint32_t count = from->kind == SHAPE_MESH ? m->triangle_count : 1;
         const uint32_t lobes = count ? bsdf_lobes(from->bsdf) : 0;
         w->shapes[i].smooth = (lobes & LOBE_SMOOTH) != 0;
+        w->shapes[i].glossy = (lobes & LOBE_GLOSSY) != 0;
         w->shadow_rays_may_pass |= (lobes & LOBE_NULL) != 0;
         w->tangents_matter |= (lobes & LOBE_ANISOTROPIC) != 0;
         primitives += count;

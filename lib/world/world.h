@@ -30,6 +30,7 @@ struct world_shape {
     bool flip_normals : 1, hidden : 1; // from the rays of the sensor
     bool two_sided : 1, textured : 1; // of the wide material
     bool smooth : 1;            // its material may scatter light that was sampled
+    bool glossy : 1;            // and by a rough specular lobe
     const void *wide_data;
 };
 

@@ -75,6 +75,8 @@ static const char picture_and_point[] =
     "<emitter type='point'><point name='position' x='-2' y='3' z='2'/>"
     "<rgb name='intensity' value='3,2,1'/></emitter>";
 
+#define CANDIDATES "<integer name='light_candidates' value='5'/>"
+
 enum { LANES = 128, SAMPLES = 64, MOST_LIGHTS = 8 };
 
 // Wider than one node of its sums, with black texels and a bright one.
@@ -159,7 +161,7 @@ static void together_is_as_one_by_one(const char *settings, const char *sampler,
     scene_write("scene.xml", text);
     if (!job_open(&job, &(struct job_options){.scene = scene_path("scene.xml"), .threads = 1}))
         exit(1);
-    a = b = (struct sum_sink){.sink = {&sum_type, false}};
+    a = b = (struct sum_sink){.sink = {.type = &sum_type, .sums = true}};
     trace(&job, &response_physical, &a);
     CHECK(job.world->light_count <= MOST_LIGHTS);
     sample_lights_alone(job.world, types);
@@ -212,6 +214,12 @@ int main(void) {
     together_is_as_one_by_one("", "sobol", picture_of_sky);
     together_is_as_one_by_one("", "sobol", picture_and_point);
     together_is_as_one_by_one("", "sobol", only_sky);
+    together_is_as_one_by_one(CANDIDATES, "sobol", more_lights);
+    together_is_as_one_by_one(CANDIDATES, "independent", many_lights);
+    together_is_as_one_by_one(CANDIDATES, "sobol", sky);
+    together_is_as_one_by_one(CANDIDATES, "sobol", only_picture);
+    together_is_as_one_by_one(CANDIDATES "<boolean name='strict_normals' value='true'/>", "sobol",
+                              only_sky);
     together_is_as_one_by_one("<integer name='max_depth' value='3'/>"
                               "<integer name='rr_depth' value='1'/>", "independent", LAMP);
     crops_give_the_same_bits();
