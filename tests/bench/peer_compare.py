@@ -7,8 +7,8 @@
 Render time only (no loading, no compilation), medians; each ratio twice, of wall clock and of
 processor seconds (user and system, all threads; ours without loading), since other work on the
 machine stretches the first far more. Equal samples: both with their independent sampler, and
-Russian roulette from the edge on that the file names; relume once more from its own default on,
-which takes fewer rays. Equal error: time x relMSE, which is the time to a given relMSE where error
+Russian roulette from the edge on that the file names, and one light sample a vertex; relume once more
+with its own roulette, which takes fewer rays. Equal error: time x relMSE, which is the time to a given relMSE where error
 falls as 1/N; relume with its own roulette, the better of sobol and lattice, and of one or two paths from
 each first hit, Mitsuba llvm of independent and multijitter (an earlier roulette does not help it). The error is the mean of
 (picture - A) (picture - B) over two independent references, so that their own noise drops out; both
@@ -49,24 +49,24 @@ def cpu_seconds():
     return usage.ru_utime + usage.ru_stime
 
 
-def sharing_first_hits(scene, paths):
-    """A copy beside the scene whose samples are the mean of several paths."""
-    copy = Path(scene).with_name(f"shading_samples{paths}.xml")
+def with_parameters(scene, values):
+    """A copy beside the scene whose integrator has these integers too."""
+    copy = Path(scene).with_name("-".join(v.replace("=", "") for v in values) + ".xml")
     opening = '<integrator type="$integrator">'
-    asked = f'<integer name="shading_samples" value="{paths}"/>'
+    asked = "".join('<integer name="{}" value="{}"/>'.format(*v.split("=")) for v in values)
     copy.write_text(Path(scene).read_text().replace(opening, opening + asked, 1))
     return str(copy)
 
 
 def relume(args, scene, size, spp, setting, seed, out):
     sampler, *names = setting
-    if TWO_PATHS in names:
-        names.remove(TWO_PATHS)
-        scene = sharing_first_hits(scene, 2)
+    own = [name for name in names if name in OWN_PARAMETERS]
+    if own:
+        scene = with_parameters(scene, own)
     command = [args.relume, "render", scene, "-o", out, "--size", size, "--spp", str(spp),
                "--sampler", sampler, "--seed", str(seed), "--quiet", "--json",
                "-D", "robust=" + ("false" if args.robust == "false" else "true")]
-    for name in names:
+    for name in set(names) - set(own):
         command += ["-D", name]
     start = cpu_seconds()
     result = subprocess.run(command, check=True, capture_output=True, text=True)
@@ -88,9 +88,9 @@ def mitsuba(args, scene, variant, size, spp, sampler, seed, out, passes=1):
 PEERS = (("scalar_rgb", "independent"), ("llvm_ad_rgb", "independent"),
          ("llvm_ad_rgb", "multijitter"))
 OWN_ROULETTE = "rr_depth=3"
-TWO_PATHS = "two paths"
-EQUAL = ("independent",)
-EARLIER = ("independent", OWN_ROULETTE)
+TWO_PATHS, ONE_LIGHT = OWN_PARAMETERS = ("shading_samples=2", "light_candidates=1")
+EQUAL = ("independent", ONE_LIGHT)
+EARLIER = ("independent", ONE_LIGHT, OWN_ROULETTE)
 BEST = tuple((sampler, OWN_ROULETTE, *more) for sampler in ("sobol", "lattice")
              for more in ((), (TWO_PATHS,)))
 
