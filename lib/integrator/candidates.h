@@ -21,21 +21,24 @@ struct candidate_shift {
     float x, y;   // of the point on it
 };
 
+// A step of uniform_float's grid, so that sums stay on it and no number is met more often than others.
+static inline float candidate_step(double x) {
+    return (float)(floor((x - floor(x)) * 0x1p24) * 0x1p-24);
+}
+
 // The points by the plane's R sequence (Roberts 2018): powers of 1 / 1.32471795724, the plastic number.
 static inline struct candidate_shift candidate_shift(uint32_t k, uint32_t count) {
-    const double x = 0.7548776662466927 * k, y = 0.5698402909980532 * k;
-    return (struct candidate_shift){(float)k / (float)count, (float)(x - floor(x)),
-                                    (float)(y - floor(y))};
+    return (struct candidate_shift){candidate_step((double)k / count),
+                                    candidate_step(0.7548776662466927 * k),
+                                    candidate_step(0.5698402909980532 * k)};
 }
 
 static inline float candidate_number(float u, float shift) {
-    const float v = u + shift;
-    return v < 1 ? v : v - 1;
+    return u < 1 - shift ? u + shift : u - (1 - shift);
 }
 
 static inline wide candidate_numbers(wide u, float shift) {
-    const wide v = u + shift;
-    return wide_select(v < 1, v, v - 1);
+    return wide_select(u < 1 - shift, u + shift, u - (1 - shift));
 }
 
 // The values so far and a random number, which each decision leaves uniform again.
@@ -49,13 +52,14 @@ struct candidates_seen_wide {
 
 static const float CANDIDATE_LAST = 0x1.fffffep-1f; // below 1
 
-// Whether the next candidate, of value >= 0, takes the place of what was kept.
+// Whether the next candidate, of value >= 0, takes the place of what was kept. One that is infinite does,
+// for the film to reject and count.
 static inline bool candidate_takes(struct candidates_seen *c, float value) {
     if (!(value > 0))
         return false;
     c->sum += value;
     const float q = value / c->sum;
-    const bool takes = c->u < q;
+    const bool takes = c->u < q || value == INFINITY;
     c->u = minf(takes ? c->u / q : (c->u - q) / (1 - q), CANDIDATE_LAST);
     return takes;
 }
@@ -64,7 +68,7 @@ static inline wide_mask candidates_take(struct candidates_seen_wide *c, wide val
     const wide_mask counts = wide_whole(value > 0);
     c->sum = wide_select(counts, c->sum + value, c->sum);
     const wide q = value / c->sum;
-    const wide_mask takes = wide_both(counts, c->u < q);
+    const wide_mask takes = wide_both(counts, wide_either(c->u < q, value == INFINITY));
     const wide u = wide_select(takes, c->u / q, (c->u - q) / (1 - q));
     c->u = wide_select(counts, wide_min(u, wide_of(CANDIDATE_LAST)), c->u);
     return takes;

@@ -120,6 +120,12 @@ static inline uint32_t path_candidates(const struct path *p, const struct trace_
     return world_has_only_a_sky(ctx->world) ? CANDIDATES_OF_A_SKY : 1;
 }
 
+// Whether candidates may be of different lights: what a late one emits is then asked for at once, since
+// its density tells how its directions compare, and not lights.
+static inline bool path_compares_lights(const struct world *w, uint32_t candidates) {
+    return candidates > 1 && w->light_count > 1;
+}
+
 // Takes the light samples of the lanes listed: those of world_sample_lights.
 void path_sample_ahead(const struct path *p, const struct trace_context *ctx, struct lane *lanes,
                        const uint16_t *list, uint32_t count, struct step *step);

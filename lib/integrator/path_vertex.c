@@ -81,10 +81,15 @@ static void sample_candidate(const struct path *p, struct trace_context *ctx, st
         const struct light_sample one = path_light_ahead(ctx->world, path_candidate(*ahead, k));
         vertex_test_light(ctx, s, closure, 0, &one, 1, test);
     }
-    if (!test->pending || !p->strict_normals)
+    const vec3 wi = test->pending ? test->contribution.wi : v3(0, 0, 0);
+    if (test->pending && p->strict_normals)
+        test->pending = same_side(s, wi, to_local(&s->point.frame, wi));
+    if (!test->pending || !test->late || !path_compares_lights(ctx->world, count))
         return;
-    const vec3 wi = test->contribution.wi;
-    test->pending = same_side(s, wi, to_local(&s->point.frame, wi));
+    test->contribution.emission =
+        light_late_emission(&ctx->world->lights[test->contribution.source], wi);
+    test->late = false;
+    test->pending = !spectrum_is_black(test->contribution.emission);
 }
 
 // Leaves in l->shadow the candidate that is to be traced, standing for all.

@@ -145,6 +145,16 @@ static uint32_t sample_lights(const struct world *w, const struct vertices *v, u
                                candidate_numbers(choice[0], shift.choice), u, out);
 }
 
+static void ask_for_emission(const struct world *w, struct lit *c) {
+    for (uint32_t left = c->lanes & c->l.late; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        c->l.emission[i] = light_late_emission(&w->lights[c->l.light[i]], wide3_lane(&c->l.s.wi, i));
+        if (spectrum_is_black(c->l.emission[i]))
+            c->lanes &= ~(1u << i);
+    }
+    c->l.late = 0;
+}
+
 // path_vertex.c's sample_candidate
 static void sample_candidate(const struct path *p, const struct world *w, const struct vertices *v,
                              uint32_t wanted, const struct shading *at, uint32_t k, uint32_t count,
@@ -169,6 +179,8 @@ static void sample_candidate(const struct path *p, const struct world *w, const 
     if (p->strict_normals)
         out->lanes &= wide_bits(wide_dot(l->s.wi, at->s.ng) * wide_dot(l->s.wi, at->s.frame.n) > 0);
     out->weight = (struct wide3){f.x * scale, f.y * scale, f.z * scale};
+    if (path_compares_lights(w, count))
+        ask_for_emission(w, out);
 }
 
 // shadow_test_value; 0 in lanes that are not lit.
@@ -205,8 +217,8 @@ static void choose_candidates(const struct path *p, const struct trace_context *
         return;
     draw(v, DRAW_CANDIDATE, u);
     seen.u = u[0];
-    wide of_kept = kept->lanes ? value_of(kept) : wide_of(0);
-    candidates_take(&seen, of_kept);
+    const wide first = kept->lanes ? value_of(kept) : wide_of(0), none = {0};
+    wide of_kept = wide_select(candidates_take(&seen, first), first, none);
     for (uint32_t k = 1; k < count; k++) {
         sample_candidate(p, ctx->world, v, wanted, at, k, count, &one);
         if (!one.lanes)

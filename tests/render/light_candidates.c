@@ -33,18 +33,28 @@ static const char metal[] =
 
 static const char picture[] =
     "<emitter type='envmap'><string name='filename' value='sky.exr'/></emitter>";
-static const char sun[] =
-    "<emitter type='sunsky'><vector name='sun_direction' x='0.5' y='0.6' z='0.6'/>"
-    "<float name='sun_aperture' value='20'/></emitter>";
-static const char near_lights[] =
-    "<shape type='rectangle'><transform name='to_world'><scale value='0.8'/>"
-    "<rotate x='1' angle='90'/><translate y='3'/></transform><emitter type='area'>"
+#define SUN \
+    "<emitter type='sunsky'><vector name='sun_direction' x='0.5' y='0.6' z='0.6'/>" \
+    "<float name='sun_aperture' value='20'/></emitter>"
+#define LAMP \
+    "<shape type='rectangle'><transform name='to_world'><scale value='0.8'/>" \
+    "<rotate x='1' angle='90'/><translate y='3'/></transform><emitter type='area'>" \
     "<rgb name='radiance' value='3,2,1'/></emitter></shape>"
+
+static const char sun[] = SUN;
+static const char sun_and_lamp[] = SUN LAMP;
+static const char near_lights[] =
+    LAMP
     "<shape type='sphere'><point name='center' x='-2' y='1.5' z='-2'/>"
     "<float name='radius' value='0.2'/><emitter type='area'>"
     "<rgb name='radiance' value='5'/></emitter></shape>"
     "<emitter type='point'><point name='position' x='2' y='3' z='-2'/>"
     "<rgb name='intensity' value='2,3,4'/></emitter>";
+
+static const char masked[] =
+    LAMP "<shape type='rectangle'><transform name='to_world'><scale x='0.5'/>"
+    "<rotate x='1' angle='90'/><translate y='2.5'/></transform><bsdf type='mask'>"
+    "<float name='opacity' value='0.4'/><bsdf type='twosided'><bsdf type='diffuse'/></bsdf></bsdf></shape>";
 
 // A dim sky with a broad bright place.
 static void write_sky(void) {
@@ -65,13 +75,14 @@ struct picture_of {
     const char *emitters, *settings, *floor, *target;
 };
 
+static uint32_t seed = 100; // of the last picture
+
 static struct measured mean_of(const struct picture_of *p, int candidates, int spp) {
     static char text[8192];
     struct render_result result;
     struct image im;
     snprintf(text, sizeof text, scene, candidates, p->settings, p->target, p->floor, p->emitters);
-    const struct job_options o = {
-        .spp = spp, .variance = true, .seed = (uint32_t)(100 + ztable_count)};
+    const struct job_options o = {.spp = spp, .variance = true, .seed = ++seed};
     render_text(text, &o, &im, &result);
     const struct measured m = measure(&im, 'G');
     image_finish(&im);
@@ -91,14 +102,16 @@ static void compare(const char *name, const char *emitters, const char *settings
     }
 }
 
-// On rough metal, seen alone: pixels are then alike, and the variance of either is known to 2 % (256
-// pixels of 16 replicates). The ratio was measured as 0.73 to 0.79 (four seeds).
+// On rough metal, seen alone: 0.74 to 0.77 with four other seeds; of single pairs 0.73 to 0.86.
 static void noise_falls(int spp) {
     const struct picture_of p = {picture, "", metal, only_floor};
-    const double one = mean_of(&p, 1, spp).error, eight = mean_of(&p, 8, spp).error;
-    const double ratio = eight * eight / (one * one);
-    printf("variance with 8 candidates: %.3f of that with 1\n", ratio);
-    CHECK(ratio < 0.85);
+    double one = 0, eight = 0;
+    for (int i = 0; i < 8; i++) {
+        one += pow(mean_of(&p, 1, spp).error, 2);
+        eight += pow(mean_of(&p, 8, spp).error, 2);
+    }
+    printf("variance with 8 candidates: %.3f of that with 1\n", eight / one);
+    CHECK(eight < 0.88 * one);
 }
 
 int main(void) {
@@ -112,6 +125,9 @@ int main(void) {
     compare("near lights, tree", near_lights,
             "<string name='light_choice' value='tree'/>", spp);
     compare("picture of a sky, strict normals", picture, strict, spp);
+    compare("sun and sky beside a lamp", sun_and_lamp, "", spp);
+    compare("lamp behind a mask, two paths", masked,
+            "<integer name='shading_samples' value='2'/>", spp);
     ztable_finish(FALSE_ALARMS);
     noise_falls(spp);
     scene_folder_close();

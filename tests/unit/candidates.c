@@ -61,10 +61,26 @@ static void numbers_stay_below_one(void) {
             const float shifts[] = {s.choice, s.x, s.y};
             for (int i = 0; i < 3; i++) {
                 CHECK(candidate_number(0, shifts[i]) == shifts[i]);
+                CHECK(shifts[i] * 0x1p24f == floorf(shifts[i] * 0x1p24f));
                 for (float u = last; u > 0.99999f; u -= 0x1p-24f)
                     CHECK(candidate_number(u, shifts[i]) >= 0 && candidate_number(u, shifts[i]) < 1);
             }
         }
+}
+
+// Every number of the grid is met once: neighbours stay neighbours, and only one step goes round.
+static void grid_is_met_evenly(void) {
+    const float step = 0x1p-24f;
+    for (uint32_t k = 1; k < MOST_CANDIDATES; k++) {
+        const float shift = candidate_shift(k, MOST_CANDIDATES).x;
+        uint32_t wrong = 0;
+        for (uint32_t i = 1; i < 1u << 24; i++) {
+            const float a = candidate_number((float)(i - 1) * step, shift);
+            const float b = candidate_number((float)i * step, shift);
+            wrong += b - a != step;
+        }
+        CHECK(wrong == 1);
+    }
 }
 
 static float any_value(struct rng *rng) {
@@ -106,10 +122,24 @@ static void lanes_have_the_numbers_of_one(void) {
     }
 }
 
+// For the film to reject, wherever it stands.
+static void infinite_one_is_kept(void) {
+    for (int at = 0; at < 3; at++) {
+        struct candidates_seen seen = {0, 0.999f};
+        int kept = -1;
+        for (int k = 0; k < 3; k++)
+            if (candidate_takes(&seen, k == at ? INFINITY : 1))
+                kept = k;
+        CHECK(kept == at && seen.sum == INFINITY);
+    }
+}
+
 int main(void) {
     kept_one_stands_for_all();
     numbers_stay_below_one();
+    grid_is_met_evenly();
     lanes_decide_as_one();
     lanes_have_the_numbers_of_one();
+    infinite_one_is_kept();
     return check_result();
 }
