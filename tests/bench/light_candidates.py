@@ -15,6 +15,7 @@ import re
 import resource
 import statistics
 import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -26,9 +27,14 @@ REFERENCE = 64 # times the samples
 
 
 def with_count(scene, count):
-    copy = scene.with_name(f"light_candidates{count}.xml")
+    copy = scene.with_name(f"candidates-{count}-of-{scene.name}")
     asked = f'<integer name="light_candidates" value="{count}"/>'
-    copy.write_text(re.sub(r"(<integrator\b[^>]*[^/]>)", lambda m: m[0] + asked, scene.read_text(), count=1))
+    text, found = re.subn(r'(<integrator\b[^>]*[^/>])(/>|>)',
+                          lambda m: m[1] + ">" + asked + "</integrator>" * (m[2] == "/>"),
+                          scene.read_text(), count=1)
+    if not found:
+        sys.exit(f"{scene}: no integrator")
+    copy.write_text(text)
     return copy
 
 

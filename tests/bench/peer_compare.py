@@ -51,10 +51,13 @@ def cpu_seconds():
 
 def with_parameters(scene, values):
     """A copy beside the scene whose integrator has these integers too."""
-    copy = Path(scene).with_name("-".join(v.replace("=", "") for v in values) + ".xml")
+    copy = Path(scene).with_name("peer_compare-" + "-".join(values) + ".xml")
     opening = '<integrator type="$integrator">'
     asked = "".join('<integer name="{}" value="{}"/>'.format(*v.split("=")) for v in values)
-    copy.write_text(Path(scene).read_text().replace(opening, opening + asked, 1))
+    text = Path(scene).read_text()
+    if opening not in text:
+        sys.exit(f"{scene}: not of peer_scenes.py")
+    copy.write_text(text.replace(opening, opening + asked, 1))
     return str(copy)
 
 
