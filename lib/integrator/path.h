@@ -78,7 +78,13 @@ struct lane_state {
 };
 
 // Four numbers of each lane, at an offset in struct lane.
-void path_gather(struct lane *const lane[WIDE_LANES], size_t offset, wide f[4]);
+static inline void path_gather(struct lane *const lane[WIDE_LANES], size_t offset, wide f[4]) {
+    const float *row[WIDE_LANES];
+    for (int i = 0; i < WIDE_LANES; i++)
+        row[i] = (const float *)(const void *)((const char *)lane[i] + offset);
+    wide_gather4(row, f);
+}
+
 void path_gather_state(struct lane *const lane[WIDE_LANES], struct lane_state *out);
 void path_draw(struct lane *const lane[WIDE_LANES], const struct lane_state *s, uint32_t purpose,
                wide u[2]);

@@ -2,13 +2,6 @@
 // Random numbers of many paths at once.
 #include "integrator/path.h"
 
-void path_gather(struct lane *const lane[WIDE_LANES], size_t offset, wide f[4]) {
-    const float *row[WIDE_LANES];
-    for (int i = 0; i < WIDE_LANES; i++)
-        row[i] = (const float *)(const void *)((const char *)lane[i] + offset);
-    wide_gather4(row, f);
-}
-
 void path_gather_state(struct lane *const lane[WIDE_LANES], struct lane_state *out) {
     wide f[4];
     path_gather(lane, offsetof(struct lane, sampler.seed), f); // seed, index, count, dimension

@@ -69,13 +69,15 @@ static void sample_candidate(const struct path *p, struct trace_context *ctx, st
                              const struct surface *s, const struct closure *closure, vec3 side,
                              const struct lights_ahead *ahead, uint32_t k, uint32_t count,
                              struct shadow_test *test) {
-    const struct candidate_shift shift = candidate_shift(k, count);
     test->pending = false;
     if (!ahead) {
         float choice = ctx->world->choice.draws ? sampler_1d(draw(l, DRAW_LIGHT)) : 0;
         struct vec2 point = sampler_2d(draw(l, DRAW_LIGHT_POINT));
-        choice = candidate_number(choice, shift.choice);
-        point = (struct vec2){candidate_number(point.x, shift.x), candidate_number(point.y, shift.y)};
+        if (k > 0) {
+            const struct candidate_shift by = candidate_shift(k, count);
+            choice = candidate_number(choice, by.choice);
+            point = (struct vec2){candidate_number(point.x, by.x), candidate_number(point.y, by.y)};
+        }
         vertex_sample_light(ctx, s, closure, side, choice, point, 1, test);
     } else if (path_candidate(*ahead, k)->pdf_sa > 0) {
         const struct light_sample one = path_light_ahead(ctx->world, path_candidate(*ahead, k));

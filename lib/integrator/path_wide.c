@@ -133,16 +133,19 @@ static uint32_t sample_ahead(const struct world *w, const struct vertices *v, ui
 }
 
 static uint32_t sample_lights(const struct world *w, const struct vertices *v, uint32_t wanted,
-                              const struct shading *at, struct candidate_shift shift,
+                              const struct shading *at, uint32_t k, uint32_t count,
                               struct light_lanes *out) {
     wide u[2], choice[2] = {{0}, {0}};
     draw(v, DRAW_LIGHT_POINT, u);
-    u[0] = candidate_numbers(u[0], shift.x);
-    u[1] = candidate_numbers(u[1], shift.y);
     if (w->choice.draws)
         draw(v, DRAW_LIGHT, choice);
-    return world_sample_lights(w, wanted, &at->s.p, &at->side,
-                               candidate_numbers(choice[0], shift.choice), u, out);
+    if (k > 0) {
+        const struct candidate_shift shift = candidate_shift(k, count);
+        u[0] = candidate_numbers(u[0], shift.x);
+        u[1] = candidate_numbers(u[1], shift.y);
+        choice[0] = candidate_numbers(choice[0], shift.choice);
+    }
+    return world_sample_lights(w, wanted, &at->s.p, &at->side, choice[0], u, out);
 }
 
 static void ask_for_emission(const struct world *w, struct lit *c) {
@@ -162,7 +165,7 @@ static void sample_candidate(const struct path *p, const struct world *w, const 
     struct light_lanes *l = &out->l;
     wide pdf;
     out->lanes = v->has_ahead ? sample_ahead(w, v, wanted, k, l)
-                              : sample_lights(w, v, wanted, at, candidate_shift(k, count), l);
+                              : sample_lights(w, v, wanted, at, k, count, l);
     if (!out->lanes)
         return;
     const struct wide3 wi = into_frame(at, l->s.wi);
