@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time relume beside Mitsuba 3 on the same scene files, in turn, and print the ratios.
 
-    peer_compare.py --relume PROGRAM [--robust true|false|each] SCENE:WxH:SPP ...
+    peer_compare.py --relume PROGRAM [--robust true|false|each] [--repeats N] [--references DIR]
+                    SCENE:WxH:SPP ...
 
 Render time only (no loading, no compilation), medians; each ratio twice, of wall clock and of
 processor seconds (user and system, all threads; ours without loading), since other work on the
@@ -11,14 +12,16 @@ Russian roulette from the edge on that the file names, and one light sample a ve
 with its own roulette, which takes fewer rays. Equal error: time x relMSE, which is the time to a given relMSE where error
 falls as 1/N; relume with its own roulette, the better of sobol and lattice, and of one or two paths from
 each first hit, Mitsuba llvm of independent and multijitter (an earlier roulette does not help it). The error is the mean of
-(picture - A) (picture - B) over two independent references, so that their own noise drops out; both
-are Mitsuba's, each with 4 times the samples. --robust: whether rays may not slip through between triangles, for both
-programs; or as each does by itself: relume's may not, Mitsuba's may.
+(picture - A) (picture - B) over two independent references, so that their own noise drops out of it;
+both are Mitsuba's, each with 64 times the samples, since relMSE divides by their mean, whose noise stays
+(with 4 times, relMSE of the classroom came out 1.4 times too large, and the programs' ratio of it anywhere from
+2.5 to 3.2). --references keeps them, which take as long as the rest, and reads those that are there.
+--robust: whether rays may not slip through between triangles, for both programs; or as each does by
+itself: relume's may not, Mitsuba's may.
 """
 import argparse
 import json
 import resource
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -27,7 +30,7 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 
-REPEATS = 3
+REFERENCE_PASSES = 64
 
 
 def read_rgb(path):
@@ -98,32 +101,47 @@ BEST = tuple((sampler, OWN_ROULETTE, *more) for sampler in ("sobol", "lattice")
              for more in ((), (TWO_PATHS,)))
 
 
+def reference(args, scene, size, spp, seed, folder):
+    path = Path(scene)
+    kept = Path(args.references or folder) / f"{path.parent.name}-{path.stem}-{size}-{spp}-{seed}.exr"
+    if not kept.exists():
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        made = kept.with_suffix(".part.exr")
+        mitsuba(args, scene, "llvm_ad_rgb", size, spp, "independent", seed, str(made), REFERENCE_PASSES)
+        made.rename(kept)
+    return read_rgb(kept)
+
+
 def measure(args, scene, size, spp, folder):
     """Seconds (wall, processor) and relMSE of every renderer, all repeats in turn."""
-    out, references = f"{folder}/out.exr", []
-    for seed in (1001, 1002):
-        mitsuba(args, scene, "llvm_ad_rgb", size, spp, "independent", seed, out, 4)
-        references.append(read_rgb(out))
-    loading = min(relume(args, scene, "16x16", 1, EQUAL, 0, out)[1] for _ in range(REPEATS))
+    out = f"{folder}/out.exr"
+    references = [reference(args, scene, size, spp, seed, folder) for seed in (1001, 1002)]
+    loading = min(relume(args, scene, "16x16", 1, EQUAL, 0, out)[1] for _ in range(3))
     seconds, errors = {}, {}
-    for repeat in range(REPEATS):
+    for repeat in range(args.repeats):
         for setting in (EQUAL, EARLIER, *BEST):
             spent = relume(args, scene, size, spp, setting, repeat, out)
             seconds.setdefault(setting, []).append(spent - [0, loading])
             errors.setdefault(setting, []).append(relmse(read_rgb(out), references))
-        for peer in PEERS[repeat > 0:]: # the scalar one takes long: once
+        for peer in PEERS:
             spent, more = mitsuba(args, scene, peer[0], size, spp, peer[1], repeat, out)
             seconds.setdefault(peer, []).append(spent)
             errors.setdefault(peer, []).append(relmse(read_rgb(out), references) * more)
-    return ({key: np.median(value, axis=0) for key, value in seconds.items()},
-            {key: statistics.mean(value) for key, value in errors.items()})
+    return {key: np.median(value, axis=0) for key, value in seconds.items()}, errors
+
+
+def mean_error(values):
+    """The mean and its standard error, relative."""
+    return np.mean(values), np.std(values, ddof=1) / len(values)**0.5 / np.mean(values)
 
 
 def compare(args, scene, size, spp):
     with tempfile.TemporaryDirectory() as folder:
-        seconds, errors = measure(args, scene, size, spp, folder)
-    cost, theirs = (np.min([seconds[s] * errors[s] for s in keys], axis=0)
-                    for keys in (BEST, PEERS[1:]))
+        seconds, repeated = measure(args, scene, size, spp, folder)
+    errors, spread = ({key: mean_error(value)[k] for key, value in repeated.items()} for k in (0, 1))
+    best = [min(keys, key=lambda s: seconds[s][0] * errors[s]) for keys in (BEST, PEERS[1:])]
+    cost, theirs = (seconds[s] * errors[s] for s in best)
+    noise = np.hypot(*(spread[s] for s in best))
     width, height = map(int, size.split("x"))
     ratios = (("scalar_rgb", seconds[PEERS[0]] / seconds[EQUAL]),
               ("llvm", seconds[PEERS[1]] / seconds[EQUAL]),
@@ -133,7 +151,7 @@ def compare(args, scene, size, spp):
     print(f"{Path(scene).parent.name} {size} {spp} spp: relume "
           f"{width * height * spp / 1e6 / seconds[EQUAL][0]:.2f} Mpaths/s; times ours, wall "
           "(processor): " + ", ".join(f"{name} {r[0]:.2f} ({r[1]:.2f})" for name, r in ratios) +
-          "; relMSE " + ", ".join(f"{' '.join(key)} {error:.3g}" for key, error in errors.items()),
+          f", standard error {100 * noise:.0f} % from relMSE; relMSE " + ", ".join(f"{' '.join(key)} {error:.3g}" for key, error in errors.items()),
           flush=True)
 
 
@@ -141,6 +159,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--relume", required=True)
     parser.add_argument("--robust", choices=("true", "false", "each"), default="each")
+    parser.add_argument("--repeats", type=int, default=6, help="turns of all, 2 or more")
+    parser.add_argument("--references", metavar="DIR", help="where references are kept")
     parser.add_argument("scenes", nargs="+", metavar="SCENE:WxH:SPP")
     args = parser.parse_args()
     for item in args.scenes:
