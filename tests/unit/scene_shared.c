@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real scenes of others are read in full: counts as their files have them, the kinds of warnings they
-// must give and no others. Skips without $RELUME_SHARED_DATA.
+// Real scenes of others are read in full: counts as their files have them, as many warnings as they
+// must give (which ones: tool/real_scenes.sh). Skips without $RELUME_SHARED_DATA.
 #include "scene/summary.h"
 #include "scene_text.h"
 
