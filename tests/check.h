@@ -29,6 +29,11 @@ static int check_failures, check_count;
         }                                                                                          \
     } while (0)
 
+// The larger of two differences; NaN is the worst of all, where fmax drops it.
+static inline double worst_of(double a, double b) {
+    return a >= b || isnan(a) ? a : b;
+}
+
 static inline int check_result(void) {
     printf("%d checks, %d failed\n", check_count, check_failures);
     return check_failures ? 1 : check_count == 0;

@@ -136,7 +136,7 @@ static double difference(const struct image *one, const struct image *im, int c,
         const double a = (double)one->pixels[at], b = (double)im->pixels[at];
         if (a == 1e10 && b == 1e10)
             continue; // the depth of pixels that see nothing, whatever the size
-        worst = fmax(worst, fabs(b / factor - a));
+        worst = worst_of(worst, fabs(b / factor - a));
     }
     return worst;
 }
@@ -148,7 +148,7 @@ static double largest_difference(const struct image *one, const struct image *im
     for (int c = 0; c < one->channels; c++) {
         const double factor = channel_factor(one->channel_names[c], l, e);
         if (factor < 0x1p120 && factor > 0x1p-120)
-            worst = fmax(worst, difference(one, im, c, factor));
+            worst = worst_of(worst, difference(one, im, c, factor));
     }
     return worst;
 }
