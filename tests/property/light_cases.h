@@ -20,6 +20,7 @@ struct light_case {
     vec3 p;                     // where it is seen from
     int charts, kx, ky;         // bins of each chart
     int midpoints;              // > 0: integrate bins by so many squared midpoints
+    bool edges;                 // along lines: points are anywhere about the midpoints
     double phase;               // CHART_SKY: u of the chart's left edge
     struct transform to_world;  // CHART_SKY: of the sky, y up
     vec3 sun;                   // CHART_CONE_AND_SKY: direction and 1 - cos of its half angle

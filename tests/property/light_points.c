@@ -12,6 +12,8 @@
 #include "math/warp.h"
 
 static struct arena arena;
+static const struct entry *made[64]; // what was tested
+static int made_count;
 
 static struct object *make_light(const char *name, const char *overrides,
                                  const struct shape *shape) {
@@ -19,6 +21,7 @@ static struct object *make_light(const char *name, const char *overrides,
     const struct light_scene scene = {.radius = 1, .shape = shape};
     if (!light_type_of(o)->prepare(o, &scene, &arena))
         exit(1);
+    made[made_count++] = o->type;
     return o;
 }
 
@@ -207,10 +210,21 @@ static void check_points(void) {
     mesh_finish(&rectangle.mesh);
 }
 
+// Of the lights at a point and at infinity; the others are in light.c.
+static void none_is_left_out(void) {
+    for (const struct entry *const *e = lights.entries; *e; e++) {
+        bool found = !((const struct light_type *)(const void *)*e)->delta;
+        for (int i = 0; i < made_count; i++)
+            found = found || made[i] == *e;
+        CHECK(found);
+    }
+}
+
 int main(void) {
     check_delta();
     check_points();
     check_parts();
+    none_is_left_out();
     arena_finish(&arena);
     return check_result();
 }
