@@ -230,6 +230,41 @@ sed 's/<film type="hdrfilm">/&<string name="pixel_format" value="rbg"\/>/' "$sce
 expect 1 "$relume" render "$folder/format.xml" -o "$folder/format.exr"
 contains "$err" 'pixel_format" is "rbg", expected one of rgb'
 
+# More lights than layers are written: refused, with what they would take at this size, unless grouped.
+lamps() {
+    local i
+    for ((i = 0; i < $1; i++)); do
+        echo "<emitter type='point' id='lamp$i'>${2:-}</emitter>"
+    done
+}
+make_scene lamps.xml "$(lamps 64)"
+lamps=(render "$folder/lamps.xml" -o "$folder/lamps.exr" --light-groups)
+expect 1 timeout 20 "$relume" "${lamps[@]}" --spp 1000000000
+contains "$err" "$folder/lamps.xml: --light-groups would take 65 layers (0.0 GiB while rendering); at most 64 are written: give the lights"
+expect 1 timeout 20 "$relume" "${lamps[@]}" --spp 1000000000 --size 8000x6000
+gib=${err#*65 layers (} gib=${gib%% GiB*}
+echo "65 layers of 8000 x 6000 pixels: $gib GiB"
+python3 -c "import sys; sys.exit(not 8000 * 6000 * 66 * 24 / 2**30 <= $gib)" ||
+    fail "66 layers of 8000 x 6000 x 3 doubles do not fit into $gib GiB"
+[ ! -e "$folder/lamps.exr" ] || fail "a refused render wrote a file"
+make_scene lamps.xml "$(lamps 63)"
+expect 0 "$relume" "${lamps[@]}" --spp 1
+make_scene lamps.xml "$(lamps 64 "<string name='group' value='street'/>")"
+expect 0 "$relume" "${lamps[@]}" --spp 1
+expect 0 "$relume" info "$folder/lamps.exr" --json
+names=" $(channels "$out") "
+[[ $names == *" street.R "* && $names != *" lamp0.R "* ]] || fail "64 lights of one group:$names"
+
+# Paths that never end are cut, counted and told: nothing here takes light away.
+make_scene white.xml '<shape type="sphere"><boolean name="flip_normals" value="true"/>
+<bsdf type="diffuse"><rgb name="reflectance" value="1"/></bsdf></shape>'
+sed 's/<integrator type="path"\/>/<integrator type="path"><integer name="rr_depth" value="1000000"\/><\/integrator>/' \
+    "$folder/white.xml" >"$folder/endless.xml"
+paths=$((16 * 12))
+expect 0 "$relume" render "$folder/endless.xml" -o "$picture" --spp 1 --seed 1 --json
+near "$out" truncated_paths $paths
+contains "$err" "$paths of $paths paths met the cap of 4096 events and were cut: the picture is too dark"
+
 # A run that is killed leaves the old file.
 cp "$picture" "$folder/old.exr"
 stopped KILL "$relume" render "$scene" -o "$picture" --spp 1000000000
