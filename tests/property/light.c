@@ -26,14 +26,6 @@ static struct shape *new_mesh(const float (*positions)[3], uint32_t vertices,
     return keep_mesh(s);
 }
 
-static struct shape *new_quadric(enum shape_kind kind, const struct transform *to_world,
-                                 bool flip) {
-    struct shape *s = arena_alloc(&arena, sizeof *s);
-    *s = (struct shape){.kind = kind, .name = "test", .to_world = *to_world,
-                        .flip_normals = flip};
-    return s;
-}
-
 static void add_rectangles(void) {
     struct shape *s = new_rectangle(false), *back = new_rectangle(true);
     struct object *light = make_light("area", "radiance=2", s);

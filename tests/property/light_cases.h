@@ -9,6 +9,7 @@
 #include "light/light.h"
 #include "make_object.h"
 #include "math/frame.h"
+#include "scene/quadric.h"
 
 enum chart_kind { CHART_TRIANGLES, CHART_QUADRIC, CHART_SPHERE_CAP, CHART_SKY, CHART_CONE_AND_SKY };
 
@@ -145,6 +146,15 @@ static inline struct texture_point triangle_place(const struct mesh *m, uint32_t
     return at;
 }
 
+static inline struct texture_point quadric_place(const struct shape *shape, struct dpoint q) {
+    struct transform inverse;
+    double p[3], n[3], uv[2], du[3], dv[3];
+    transform_invert(&shape->to_world, &inverse);
+    transform_point(&inverse, q.x, p);
+    quadric_surface(shape->kind, p, n, uv, du, dv);
+    return (struct texture_point){.uv = {(float)uv[0], (float)uv[1]}};
+}
+
 // The hit at a place of a chart, and solid angle per unit of the chart. false: seen from behind.
 static inline bool surface_hit(const struct light_case *c, int chart, double s, double t,
                                struct light_hit *hit, double *solid_angle) {
@@ -180,6 +190,8 @@ static inline bool surface_hit(const struct light_case *c, int chart, double s, 
     if (c->kind == CHART_TRIANGLES)
         hit->at = triangle_place(&c->shape->mesh, (uint32_t)chart, (float)(sqrt(s) * (1 - t)),
                                  (float)(sqrt(s) * t));
+    else
+        hit->at = quadric_place(c->shape, q);
     return dot(hit->wi, n) < 0;
 }
 

@@ -193,6 +193,14 @@ static struct shape *keep_mesh(struct shape *s) {
     return s;
 }
 
+static struct shape *new_quadric(enum shape_kind kind, const struct transform *to_world,
+                                 bool flip) {
+    struct shape *s = arena_alloc(&arena, sizeof *s);
+    *s = (struct shape){.kind = kind, .name = "test", .to_world = *to_world,
+                        .flip_normals = flip};
+    return s;
+}
+
 static struct shape *new_rectangle(bool flip) {
     struct shape *s = arena_alloc(&arena, sizeof *s);
     s->name = "rectangle";

@@ -34,7 +34,7 @@ static struct shape *new_coloured_rectangle(void) {
     return s;
 }
 
-static const struct object *new_picture(int width, int height) {
+static struct object *new_picture(int width, int height, const char *filter) {
     char path[64] = "/tmp/relume-picture-XXXXXX.exr", overrides[128];
     const int file = mkstemps(path, 4);
     struct image im;
@@ -45,18 +45,23 @@ static const struct object *new_picture(int width, int height) {
     CHECK(file >= 0 && image_write_exr(path, &im, &(struct image_exr_options){0}));
     close(file);
     image_finish(&im);
-    snprintf(overrides, sizeof overrides, "filename=%s filter_type=nearest", path);
-    const struct object *o = keep_texture(make_texture(&arena, "bitmap", overrides, NULL));
+    snprintf(overrides, sizeof overrides, "filename=%s filter_type=%s", path, filter);
+    struct object *o = make_texture(&arena, "bitmap", overrides, NULL);
     unlink(path);
     return o;
 }
 
-// Near, where half of the samples go by solid angle, beside, far, and from behind.
-static void add_textured_rectangle(const struct shape *s, const struct object *texture) {
+static struct object *new_light(const struct shape *s, const struct object *texture) {
     const struct object *const children[] = {texture, NULL};
     struct object *light = make_object(&arena, &lights, "area", "", children);
     const struct light_scene scene = {.radius = 1, .shape = s};
     CHECK(light_type_of(light)->prepare(light, &scene, &arena));
+    return light;
+}
+
+// Near, where half of the samples go by solid angle, beside, far, and from behind.
+static void add_textured_rectangle(const struct shape *s, const struct object *texture) {
+    struct object *light = new_light(s, texture);
     const vec3 from[4] = {v3(0.3f, 0.2f, 0.4f), v3(-0.9f, 0.5f, 0.02f), v3(3, 1, 5), v3(0, 0, 300)};
     for (int i = 0; i < 4; i++) {
         struct light_case *c = add_case(texture->type->name, CHART_TRIANGLES, light, s, from[i]);
@@ -67,9 +72,22 @@ static void add_textured_rectangle(const struct shape *s, const struct object *t
     add_case(texture->type->name, CHART_TRIANGLES, light, s, v3(0, 0, -1))->may_be_empty = true;
 }
 
+// Samples go where they would without a texture; what they carry is looked up.
+static void add_textured_quadrics(void) {
+    const struct object *picture = keep_texture(new_picture(5, 7, "bilinear"));
+    const struct transform place = transform_scale(0.5, 0.5, 0.5), odd = transform_scale(0.5, 0.9, 0.3);
+    struct shape *const s[4] = {
+        new_quadric(SHAPE_SPHERE, &place, false), new_quadric(SHAPE_SPHERE, &odd, false),
+        new_quadric(SHAPE_DISK, &odd, false), new_quadric(SHAPE_CYLINDER, &odd, false)};
+    const char *const names[4] = {"sphere", "ellipsoid", "disk", "cylinder"};
+    for (int i = 0; i < 4; i++)
+        add_case(names[i], i == 0 ? CHART_SPHERE_CAP : CHART_QUADRIC, new_light(s[i], picture), s[i],
+                 v3(1, 0.8f, 1.2f))->midpoints = 48;
+}
+
 static void add_textured(void) {
     const struct shape *s = new_coloured_rectangle();
-    const struct object *picture = new_picture(12, 40);
+    const struct object *picture = keep_texture(new_picture(12, 40, "nearest"));
     const struct object *board =
         keep_texture(make_texture(&arena, "checkerboard", "color0=0.05 color1=3", NULL));
     const struct object *colours =
@@ -90,6 +108,7 @@ static void add_textured(void) {
 
 int main(void) {
     add_textured();
+    add_textured_quadrics();
     check_cases();
     for (int i = 0; i < textured_count; i++)
         if (texture_type_of(textured[i])->finish)
