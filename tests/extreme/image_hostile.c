@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Odd and hostile pictures of the shared data: what is sound is read, everything else is refused
-// with one line that names the file. No file may take more than 10 s of processor time or 1.2 GiB.
+// with one line that names the file. No file may take more than 10 s of processor time or 1 GiB
+// (memory_limit.h).
 #include <dirent.h>
 #include <stdlib.h>
 #include <sys/resource.h>
@@ -8,6 +9,7 @@
 #include "capture.h"
 #include "check.h"
 #include "image/image.h"
+#include "memory_limit.h"
 
 enum verdict { READ, REFUSE, EITHER };
 
@@ -83,10 +85,11 @@ int main(void) {
     struct rusage children;
     if (!getenv("RELUME_SHARED_DATA"))
         return 77;
+    memory_limit();
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
         check_folder(folders[i].name, folders[i].least, folders[i].verdict);
     getrusage(RUSAGE_CHILDREN, &children);
     printf("largest child: %ld MiB\n", children.ru_maxrss / 1024);
-    CHECK(children.ru_maxrss < 1200 * 1024);
+    CHECK(children.ru_maxrss < MEMORY_LIMIT_MEBIBYTES * 1024);
     return check_result();
 }

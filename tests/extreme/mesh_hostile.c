@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mesh files made to break readers: those that are right after all are read, every other one is
-// refused with a message that names it.
+// refused with a message that names it. No file may take more than 10 s or 1 GiB (memory_limit.h).
 #include <dirent.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "base/file.h"
 #include "capture.h"
 #include "check.h"
+#include "memory_limit.h"
 #include "mesh_check.h"
+
+enum { SECONDS = 10 };
 
 static const char *const folders[] = {"assimp/OBJ", "assimp/PLY", "assimp/invalid", "magnum-obj",
                                       "magnum-ply", NULL};
@@ -42,10 +46,14 @@ static void check_file(const char *folder, const char *name, int *read) {
         return;
     const struct mesh_reader_type *type =
         strcmp(extension, "obj") == 0 ? &mesh_reader_obj : &mesh_reader_ply;
+    printf("%s: ", name);
+    fflush(stdout); // should the alarm end the test here
     capture_begin();
+    alarm(SECONDS);
     const bool ok = type->read(path, &options, &m);
+    alarm(0);
     capture_end();
-    printf("%s: %s %s", name, ok ? "read" : "refused", *captured ? captured : "\n");
+    printf("%s %s", ok ? "read" : "refused", *captured ? captured : "\n");
     CHECK(ok == is_good(name));
     CHECK(ok ? !mesh_fault(&m) : captured_has(path));
     *read += ok;
@@ -57,6 +65,7 @@ int main(void) {
     int read = 0;
     if (!getenv("RELUME_SHARED_DATA"))
         return 77;
+    memory_limit();
     for (const char *const *f = folders; *f; f++) {
         char path[4096];
         snprintf(path, sizeof path, "%s/hostile/%s", getenv("RELUME_SHARED_DATA"), *f);

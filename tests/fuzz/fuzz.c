@@ -14,29 +14,14 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "memory_limit.h"
 #include "mutate.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ADDRESS_SANITIZER 1
-#endif
-#endif
-
-enum { BATCH = 200, SECONDS = 10, WALL_SECONDS = 120, MEBIBYTES = 1024 };
+enum { BATCH = 200, SECONDS = 10, WALL_SECONDS = 120 };
 
 enum outcome { PENDING, READ, REFUSED, SILENT, CRASHED, HUNG };
 static const char *const outcome_names[] = {"pending",         "read",    "refused",
                                             "refused without a word", "crashed", "hung"};
-
-#ifdef ADDRESS_SANITIZER
-// Options that make an allocation above the limit a crash; what the environment says comes on top.
-const char *__asan_default_options(void);
-const char *__asan_default_options(void) {
-    return "max_allocation_size_mb=1024:allocator_may_return_null=0:new_delete_type_mismatch=0";
-}
-#endif
 
 struct fuzz {
     const char *name;
@@ -123,11 +108,7 @@ static _Noreturn void run_batch(const struct fuzz *f, int first, int end) {
     const int fd = open(f->message_path, O_RDWR | O_CREAT | O_TRUNC | O_APPEND, 0666);
     if (fd < 0 || dup2(fd, 2) < 0)
         exit(2);
-#ifndef ADDRESS_SANITIZER
-    // The limit counts what is there already, libraries included: twice as much for all together.
-    const struct rlimit memory = {2ul * MEBIBYTES << 20, 2ul * MEBIBYTES << 20};
-    setrlimit(RLIMIT_AS, &memory);
-#endif
+    memory_limit();
     const struct rlimit no_core = {0, 0};
     setrlimit(RLIMIT_CORE, &no_core);
     for (int i = first; i < end; i++)

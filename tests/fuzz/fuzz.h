@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The loop of the fuzz drivers: damaged copies of good files are read in child processes that may
-// take 10 seconds of processor time and 1 GiB; each is read, or refused with a message that names
-// the file.
+// take 10 seconds of processor time and 1 GiB (memory_limit.h); each is read, or refused with a
+// message that names the file.
 //
 // usage: DRIVER [--count N] [--full N] [--seed S] FILE...
 //   --count  number of copies, spread evenly over the files (default 200); --full: instead of it
