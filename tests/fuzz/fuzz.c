@@ -14,6 +14,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "decoder_death.h"
 #include "memory_limit.h"
 #include "mutate.h"
 
@@ -64,9 +65,9 @@ static void write_case(const struct fuzz *f, int i, const char *path) {
     mem_free(m.data);
 }
 
-// Whether the messages of the case, which begin at byte `from` of the file, hold its path; if not,
-// they are shown.
-static bool message_names(const struct fuzz *f, long from, const char *path) {
+// What the messages of the case, which begin at byte `from` of the file, make of its refusal; those
+// that make it a fault are shown.
+static enum outcome judge_refusal(const struct fuzz *f, long from, const char *path) {
     FILE *file = fopen(f->message_path, "rb");
     static char text[1 << 16];
     if (!file || fseek(file, from, SEEK_SET) != 0)
@@ -74,9 +75,11 @@ static bool message_names(const struct fuzz *f, long from, const char *path) {
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);
     const bool named = strstr(text, path) != NULL;
-    if (!named)
+    if (decoder_died(text))
+        printf("%s: its decoder crashed: %s\n", path, text);
+    else if (!named)
         printf("%s: refused without a word, or with one that does not name it: %s\n", path, text);
-    return named;
+    return decoder_died(text) ? CRASHED : named ? REFUSED : SILENT;
 }
 
 // 10 seconds of processor time; for the case that a process sleeps, or its child hangs, also wall
@@ -99,8 +102,8 @@ static void run_case(const struct fuzz *f, int i) {
     set_timer(0, 0);
     fflush(stderr);
     const long at = from + snprintf(NULL, 0, "case %d\n", i);
-    f->outcomes[i] = good ? READ : message_names(f, at, path) ? REFUSED : SILENT;
-    if (f->outcomes[i] != SILENT)
+    f->outcomes[i] = good ? READ : judge_refusal(f, at, path);
+    if (f->outcomes[i] == READ || f->outcomes[i] == REFUSED)
         remove(path);
 }
 

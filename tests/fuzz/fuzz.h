@@ -7,8 +7,8 @@
 //   --count  number of copies, spread evenly over the files (default 200); --full: instead of it
 //            when RELUME_TEST_FULL is set
 //   FILE     "@/PATH" is relative to $RELUME_SHARED_DATA, and left out when that is not set
-// Exit status: 0, or 1 when a copy crashed, hung or was refused without a word; its file is kept
-// in the working directory, the messages beside it. 77: no file to start from.
+// Exit status: 0, or 1 when a copy crashed (also in a decoder's own process), hung or was refused
+// without a word; its file is kept in the working directory, the messages beside it. 77: no file to start from.
 #pragma once
 
 #include <stdbool.h>

@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/thread.h"
 #include "capture.h"
+#include "decoder_death.h"
 #include "image/decode.h"
 #include "memory_limit.h"
 
@@ -118,9 +119,12 @@ int main(void) {
     a_picture_comes_through_whole(paint, NULL);
     a_picture_comes_through_whole(lack, paint);
     refuses(crash, NULL, "damaged");
+    CHECK(decoder_died(captured));
     refuses(give_up, NULL, "line 7 is ? wrong");
+    CHECK(!decoder_died(captured));
     refuses(claim_much, NULL, "may take at most 768 MiB");
     refuses(leave, NULL, "ended early");
+    CHECK(decoder_died(captured));
     refuses(lack, NULL, "not yet implemented");
     refuses(lack, give_up, "line 7");
     if (!ADDRESS_SANITIZER)
