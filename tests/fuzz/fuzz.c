@@ -33,7 +33,7 @@ struct fuzz {
     int file_count;
     int suspect; // the case that hung once; -1: none
     unsigned char *outcomes; // shared with the children
-    char directory[64], message_path[128];
+    char directory[64], message_path[128], meshes[128]; // meshes: a link, or empty
 };
 
 static struct mutant make_case(const struct fuzz *f, int i) {
@@ -189,6 +189,25 @@ static void parse(struct fuzz *f, int argc, char **argv) {
         f->count = long_count;
 }
 
+// A scene names the meshes that lie beside it: its copies must find them.
+static void link_meshes(struct fuzz *f) {
+    for (int i = 0; i < f->file_count; i++) {
+        const char *slash = strrchr(f->files[i], '/');
+        char near[4096];
+        snprintf(near, sizeof near, "%.*s/meshes", slash ? (int)(slash - f->files[i]) : 1,
+                 slash ? f->files[i] : ".");
+        char *meshes = realpath(near, NULL);
+        if (!meshes)
+            continue;
+        snprintf(f->meshes, sizeof f->meshes, "%s/meshes", f->directory);
+        if (symlink(meshes, f->meshes) != 0) { // also if two of the files have some
+            perror(f->meshes);
+            exit(2);
+        }
+        free(meshes);
+    }
+}
+
 static int report(const struct fuzz *f) {
     int counts[6] = {0};
     for (int i = 0; i < f->count; i++)
@@ -216,10 +235,13 @@ int fuzz_main(int argc, char **argv, const char *name, fuzz_reader read) {
         return 2;
     }
     snprintf(f.message_path, sizeof f.message_path, "%s/messages", f.directory);
+    link_meshes(&f);
     for (int i = 0; i < f.count;)
         i = fork_batch(&f, i, i + BATCH < f.count ? i + BATCH : f.count);
     const int status = report(&f);
     remove(f.message_path);
+    if (status == 0 && *f.meshes)
+        remove(f.meshes);
     rmdir(f.directory); // stays when something is kept in it
     for (int i = 0; i < f.file_count; i++)
         mem_free((void *)(uintptr_t)f.files[i]);
