@@ -13,9 +13,8 @@ with its own roulette, which takes fewer rays. Equal error: time x relMSE, which
 falls as 1/N; relume with its own roulette, the better of sobol and lattice, and of one or two paths from
 each first hit, Mitsuba llvm of independent and multijitter (an earlier roulette does not help it). The error is the mean of
 (picture - A) (picture - B) over two independent references, so that their own noise drops out of it;
-both are Mitsuba's, each with 64 times the samples, since relMSE divides by their mean, whose noise stays
-(with 4 times, relMSE of the classroom came out 1.4 times too large, and the programs' ratio of it anywhere from
-2.5 to 3.2). --references keeps them, which take as long as the rest, and reads those that are there.
+both are Mitsuba's, each with 64 times the samples, since relMSE divides by their mean, whose noise stays.
+--references keeps them, which take as long as the rest, and reads those that are there.
 Where few pixels decide, relMSE differs many times from seed to seed: the ratio is also told of all but the
 worst 1 % of each picture's pixels, and both with their standard errors. --robust: whether rays may not slip
 through between triangles, for both programs; or as each does by itself: relume's may not, Mitsuba's may.
@@ -115,7 +114,9 @@ BEST = tuple((sampler, OWN_ROULETTE, *more) for sampler in ("sobol", "lattice")
 
 def reference(args, scene, size, spp, seed, folder):
     path = Path(scene)
-    kept = Path(args.references or folder) / f"{path.parent.name}-{path.stem}-{size}-{spp}-{seed}.exr"
+    robust = "-robust" if args.robust == "true" else ""
+    name = f"{path.parent.name}-{path.stem}-{size}-{spp}-{seed}{robust}.exr"
+    kept = Path(args.references or folder) / name
     if not kept.exists():
         kept.parent.mkdir(parents=True, exist_ok=True)
         made = kept.with_suffix(".part.exr")
