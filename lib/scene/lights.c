@@ -15,6 +15,19 @@ static bool read_hidden(struct reader *r, struct xml_node *node, bool *hidden) {
     return false;
 }
 
+// A light is of a shape, which only "area" is, or of the scene.
+static bool stands_right(const struct object *light, bool in_shape) {
+    const bool of_shape = strcmp(light->type->name, "area") == 0;
+    if (of_shape == in_shape)
+        return true;
+    if (of_shape)
+        log_error_at(light->at, "emitter \"area\" stands in no shape");
+    else
+        log_error_at(light->at, "emitter \"%s\" stands in a shape, expected \"area\", or the emitter "
+                     "directly in the scene", light->type->name);
+    return false;
+}
+
 bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape) {
     const char *group = node_take_value(r, node, "group");
     const char *include = node_take_value(r, node, "include");
@@ -23,7 +36,7 @@ bool emitter_read(struct reader *r, struct xml_node *node, uint32_t shape) {
     if (!read_hidden(r, node, &hidden))
         return false;
     struct object *o = object_make(r, r->options->registries.lights, node, NULL, NULL);
-    if (!o)
+    if (!o || !stands_right(o, shape != SCENE_NONE))
         return false;
     struct scene_light *light = LIST_ADD(&r->lights, struct scene_light);
     const char *shape_name =

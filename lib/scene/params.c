@@ -102,10 +102,15 @@ static bool read_vector(const struct xml_node *node, const struct param *p, void
         return wrong_tag(node, p, p->type == PARAM_POINT ? "point" : "vector");
     if (!value_vector(node, 0, v))
         return false;
-    *(vec3 *)out = v3((float)v[0], (float)v[1], (float)v[2]);
-    if (isfinite(length(*(vec3 *)out)))
+    const vec3 read = *(vec3 *)out = v3((float)v[0], (float)v[1], (float)v[2]);
+    if (!isfinite(length(read))) {
+        log_error_at(node->at, "\"%s\" exceeds the range of numbers", p->name);
+        return false;
+    }
+    if (!p->optional || length2(read) > 0) // zero stands for one that is not given
         return true;
-    log_error_at(node->at, "\"%s\" exceeds the range of numbers", p->name);
+    log_error_at(node->at, "\"%s\" is %g %g %g, expected a direction, which has a length", p->name, v[0],
+                 v[1], v[2]);
     return false;
 }
 

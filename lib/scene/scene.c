@@ -75,10 +75,6 @@ static bool read_emitter(struct reader *r, struct xml_node *child) {
     const struct id_entry *entry = id ? id_find(r, id) : NULL;
     if (strcmp(child->tag, "emitter") != 0 || (entry && entry->state == ID_DONE))
         return true;
-    if (strcmp(xml_get(child, "type"), "area") == 0) {
-        log_error_at(child->at, "emitter \"area\" stands in no shape");
-        return false;
-    }
     return emitter_read(r, child, SCENE_NONE);
 }
 

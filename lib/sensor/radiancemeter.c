@@ -14,8 +14,8 @@ static const struct param params[] = {
      .help = "looks along +z from the origin, unless direction is given"},
     {"origin", PARAM_POINT, offsetof(struct radiancemeter, origin), .def = "0", .unit = "m",
      .help = "where it stands; goes with direction"},
-    {"direction", PARAM_VECTOR, offsetof(struct radiancemeter, direction), .def = "0", .unit = "",
-     .help = "in which it looks; of any length"},
+    {"direction", PARAM_VECTOR, offsetof(struct radiancemeter, direction), .unit = "",
+     .help = "in which it looks; of any length", .optional = true},
     PARAM_END,
 };
 

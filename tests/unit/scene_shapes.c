@@ -215,6 +215,18 @@ static void faults(void) {
     check_fault("<shape type='shapegroup'><shape type='cube'><emitter type='area'/></shape></shape>",
                 "an emitter in a shapegroup");
     check_fault("<emitter type='area'/>", "emitter \"area\" stands in no shape");
+    const char *const of_the_scene[] = {"constant", "directional", "point", "spot", "sunsky"};
+    for (size_t i = 0; i < sizeof of_the_scene / sizeof *of_the_scene; i++) {
+        char body[128], message[128];
+        snprintf(body, sizeof body, "<shape type='cube'><emitter type='%s'/></shape>", of_the_scene[i]);
+        snprintf(message, sizeof message, "emitter \"%s\" stands in a shape, expected \"area\"",
+                 of_the_scene[i]);
+        check_fault(body, message);
+    }
+    check_fault("<emitter type='point' id='p'/><shape type='cube'><ref id='p'/></shape>",
+                "emitter \"point\" stands in a shape");
+    check_fault("<emitter type='directional'><vector name='direction' value='0 0 0'/></emitter>",
+                "\"direction\" is 0 0 0, expected a direction");
     check_fault("<film type='hdrfilm'/>", "a <film> cannot stand directly in a scene");
     CHECK(!scene_parse("<shape type='sphere'><float name='radius' value='1e20'/></shape>"));
     CHECK(captured_has("scene.xml: shapes reach beyond 1e18"));
