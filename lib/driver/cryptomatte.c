@@ -114,6 +114,17 @@ static void add_attributes(struct image *im, const char *layer, const struct nam
     json_destroy(manifest);
 }
 
+bool cryptomatte_is_layer(const char *name) {
+    bool known = false;
+    for (int i = 0; i < KINDS; i++)
+        for (int rank = 0; rank < MATTE_RANKS / 2; rank++) {
+            char layer[IMAGE_NAME_SIZE];
+            snprintf(layer, sizeof layer, "%s%02d", kinds_known[i].layer, rank);
+            known |= strcmp(layer, name) == 0;
+        }
+    return known;
+}
+
 void cryptomatte_add_channels(struct image *im, const char *layer) {
     static const char channels[4] = {'R', 'G', 'B', 'A'};
     const int first = im->channels;

@@ -15,6 +15,8 @@ enum { CRYPTOMATTE_OBJECT = 1, CRYPTOMATTE_MATERIAL = 2, CRYPTOMATTE_SAMPLES = 2
 
 // Bits from "object,material"; false after an error message.
 bool cryptomatte_parse(const char *list, uint32_t *kinds);
+// Whether it may write channels under that name.
+bool cryptomatte_is_layer(const char *name);
 // Appends the layers to a picture of the job. false: stopped.
 bool cryptomatte_add(const struct job *job, uint32_t kinds, uint64_t samples, struct image *im);
 

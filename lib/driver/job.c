@@ -182,14 +182,14 @@ static bool prepare(struct job *job, const struct job_options *o) {
         (o->cryptomatte && !cryptomatte_parse(o->cryptomatte, &job->cryptomatte)) ||
         !choose_crop(o, &s->film, &job->film) ||
         !prepare_integrator(o, s, job->world, &job->method, &job->film) ||
-        !prepare_sensor(job) || (o->light_groups && !light_groups_init(&job->groups, s)))
+        !prepare_sensor(job) ||
+        (o->light_groups &&
+         (!light_groups_init(&job->groups, s) || !light_groups_check(&job->groups, s))))
         return false;
     world_learn_blockers(job->world, start_path, s);
     job->film.group_count = job->groups.count;
     job->film.group_names = job->groups.names;
     job->film.group_of_light = job->groups.of_light;
-    if (!film_groups_check(&job->film))
-        return false;
     for (size_t i = 0; i < o->reading.define_count; i++) {
         const struct scene_define *d = &o->reading.defines[i];
         job->defines_hash = file_hash(d->name, strlen(d->name) + 1, job->defines_hash);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/mem.h"
+#include "driver/cryptomatte.h"
 #include "sink/film.h"
 
 static bool any_named(const struct scene *s) {
@@ -54,6 +55,24 @@ bool light_groups_init(struct light_groups *g, const struct scene *s) {
               "written: give the lights `group` names", s->path, rest,
               (double)film_bytes(&film, FILM_BLOCK) / 0x1p30, FILM_MOST_GROUPS);
     return false;
+}
+
+bool light_groups_check(const struct light_groups *g, const struct scene *s) {
+    enum { MOST = IMAGE_NAME_SIZE - 1 - 2 }; // beside ".R"
+    for (uint32_t i = 0; i < s->light_count; i++) {
+        const char *name = g->names[g->of_light[i]];
+        const size_t n = strlen(name);
+        const bool taken = film_is_layer(name) || cryptomatte_is_layer(name);
+        if (n >= 1 && n <= MOST && !taken)
+            continue;
+        char found[80];
+        snprintf(found, sizeof found, taken ? "the name of another layer" : "a name of %zu bytes", n);
+        log_error_at(s->lights[i].object->at,
+                     "--light-groups: \"%s\" is %s; expected another id of the light, or a `group`, "
+                     "of 1 to %d bytes", name, found, MOST);
+        return false;
+    }
+    return true;
 }
 
 void light_groups_finish(struct light_groups *g) {

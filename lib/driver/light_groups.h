@@ -13,6 +13,9 @@ struct light_groups {
 
 // false after an error message when there are more groups than a film keeps.
 bool light_groups_init(struct light_groups *g, const struct scene *s);
+// Whether their names can be those of layers of a picture, beside all others that it may have; false
+// after an error message.
+bool light_groups_check(const struct light_groups *g, const struct scene *s);
 void light_groups_finish(struct light_groups *g);
 
 // Leaves a scene the lights of one group alone ("rest": of none); shapes whose light goes are dark. The world comes

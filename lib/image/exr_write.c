@@ -197,8 +197,8 @@ static bool check_image(const char *path, const struct image *im) {
     }
     for (int c = 0; c < im->channels; c++)
         if (!im->channel_names[c][0] || image_find_channel(im, im->channel_names[c]) != c) {
-            log_error("%s: cannot be written: channel name '%s' is empty or stands there twice",
-                      path, im->channel_names[c]);
+            log_error("%s: cannot be written: two channels have the name '%s', or it is empty; names "
+                      "differ within %d bytes", path, im->channel_names[c], IMAGE_NAME_SIZE - 1);
             return false;
         }
     return true;

@@ -53,8 +53,8 @@ size_t film_bytes(const struct film_options *options, uint64_t samples);
 
 // Bits of enum film_aov from "albedo,N,Z"; false after an error message with the known names.
 bool film_aovs_parse(const char *list, uint32_t *aovs);
-// Whether no light group has the name of another layer; false after an error message.
-bool film_groups_check(const struct film_options *o);
+// Whether a film may write a layer of that name, whatever its light groups are.
+bool film_is_layer(const char *name);
 
 // Tiles cover the crop; they lie on the absolute grid.
 uint32_t film_tile_count(const struct film *f);

@@ -36,7 +36,7 @@ bool film_aovs_parse(const char *list, uint32_t *aovs) {
     return true;
 }
 
-static bool is_layer(const char *name) {
+bool film_is_layer(const char *name) {
     static const char *const others[] = {"variance", "m2", "clamped", "samples"};
     bool known = false;
     for (int i = 0; i < AOVS; i++)
@@ -46,16 +46,6 @@ static bool is_layer(const char *name) {
     for (int i = 0; i < PATH_SLOTS; i++)
         known |= strcmp(film_path_names[i], name) == 0;
     return known;
-}
-
-bool film_groups_check(const struct film_options *o) {
-    for (uint32_t i = 0; i < o->group_count; i++)
-        if (is_layer(o->group_names[i])) {
-            log_error("--light-groups: \"%s\" is the name of another layer; expected another id of "
-                      "the light, or a `group`", o->group_names[i]);
-            return false;
-        }
-    return true;
 }
 
 static uint32_t take(uint32_t *next, bool wanted, uint32_t count) {

@@ -223,7 +223,19 @@ for name in rest variance; do
     make_scene clash.xml "<emitter type='point' id='$name'/>"
     expect 1 "$relume" render "$folder/clash.xml" -o "$folder/clash.exr" --light-groups --spp 1000000
 done
-contains "$err" '"variance" is the name of another layer'
+contains "$err" 'clash.xml:7: --light-groups: "variance" is the name of another layer'
+# An emitter, a group: what cannot be a layer; the longest name that can.
+long=$(printf 'n%.0s' {1..61})
+for light in "<emitter type='point' id='${long}n'/>" "<emitter type='point' id='${long}na'/><emitter type='point' id='${long}nb'/>" \
+    "<emitter type='point'><string name='group' value=''/></emitter>" "<emitter type='point' id='CryptoObject00'/>"; do
+    make_scene clash.xml "$light"
+    expect 1 timeout 20 "$relume" render "$folder/clash.xml" -o "$folder/clash.exr" --light-groups --cryptomatte object \
+        --spp 1000000000
+    contains "$err" "clash.xml:7: --light-groups: \""
+    contains "$err" "expected another id of the light, or a \`group\`, of 1 to 61 bytes"
+done
+make_scene clash.xml "<emitter type='point' id='$long'/>"
+expect 0 "$relume" render "$folder/clash.xml" -o "$folder/clash.exr" --light-groups --cryptomatte object --spp 1
 expect 2 "$relume" render "$scene" -o "$folder/sky.png"
 contains "$err" "relume tonemap"
 sed 's/<film type="hdrfilm">/&<string name="pixel_format" value="rbg"\/>/' "$scene" >"$folder/format.xml"
