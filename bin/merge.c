@@ -33,7 +33,7 @@ static const struct option_spec options[] = {
      .argument = "NAME", .help = "primaries of the picture, as for render, whatever those of the parts",
      .def = "rec709", .choices = image_space_names},
     {.name = "half", .type = OPTION_FLAG, .offset = offsetof(struct values, half),
-     .help = "write 16-bit channels"},
+     .help = "write 16-bit channels, but for numbers that name objects"},
     OPTION_QUIET(struct values, quiet),
     OPTION_JSON(struct values, json),
     OPTION_END,

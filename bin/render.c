@@ -94,7 +94,7 @@ static const struct option_spec options[] = {
     {.name = "colour-space", .type = OPTION_CHOICE, .offset = AT(space), .argument = "NAME",
      .help = "primaries of the picture", .def = "rec709",
      .choices = image_space_names},
-    {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels"},
+    {.name = "half", .type = OPTION_FLAG, .offset = AT(half), .help = "write 16-bit channels, but for numbers that name objects"},
     OPTION_GROUP("Running"),
     OPTION_THREADS(struct values, threads),
     OPTION_QUIET(struct values, quiet),

@@ -25,9 +25,10 @@ struct writer {
     atomic_bool failed;
 };
 
-// Numbers that name objects (Cryptomatte) do not survive rounding.
+// Numbers that name objects do not survive rounding.
 static bool is_identity(const char *channel) {
-    return strncmp(channel, "Crypto", 6) == 0;
+    return strncmp(channel, "Crypto", 6) == 0 || strcmp(channel, "shape.Y") == 0 ||
+           strcmp(channel, "instance.Y") == 0;
 }
 
 // Finite values that round to infinity as a half: beyond 65504 + 16, half the last step.

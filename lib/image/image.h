@@ -60,7 +60,8 @@ struct image_bytes {
 bool image_read_bytes(const char *name, const struct image_bytes *bytes, struct image *im);
 
 struct image_exr_options {
-    bool half;                // 16-bit channels; values beyond its range become infinite
+    bool half;                // 16-bit channels but for numbers that name objects; values beyond
+                              // its range become infinite
     uint64_t *half_overflows; // is set to their number; may be NULL
     int threads;              // 0: default
 };

@@ -143,6 +143,23 @@ static void half_rounds_and_counts_overflow(void) {
     image_finish(&back);
 }
 
+// 2049 is the first whole number that a half rounds.
+static void half_keeps_numbers_that_name_objects(void) {
+    static const char *const names[] = {"Crypto00.R", "instance.Y", "shape.Y", "shape.Z"};
+    struct image im, back;
+    CHECK(image_init(&im, 1, 1, 4));
+    for (int c = 0; c < 4; c++) {
+        snprintf(im.channel_names[c], IMAGE_NAME_SIZE, "%s", names[c]);
+        im.pixels[c] = 2049;
+    }
+    CHECK(image_write_exr(path, &im, &(struct image_exr_options){.half = true}));
+    CHECK(image_read(path, &back));
+    for (int c = 0; c < 4; c++)
+        CHECK(back.pixels[image_find_channel(&back, names[c])] == (c < 3 ? 2049 : 2048));
+    image_finish(&im);
+    image_finish(&back);
+}
+
 static void refusals_leave_the_old_file(void) {
     struct image im, back;
     CHECK(image_init(&im, 3, 3, 2));
@@ -213,6 +230,7 @@ int main(void) {
     colours_come_before_other_channels();
     attributes_and_windows_return();
     half_rounds_and_counts_overflow();
+    half_keeps_numbers_that_name_objects();
     refusals_leave_the_old_file();
     truncated_files_are_refused();
     failed_writes_end();
