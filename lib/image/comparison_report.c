@@ -107,6 +107,8 @@ void comparison_print(const struct comparison *c) {
         printf("%-12s %.6g", lines[i].label, lines[i].value);
         if (isfinite(lines[i].error))
             printf(" +- %.2g (95 %%)", 1.96 * lines[i].error);
+        else if (isfinite(c->metrics.mse_noise))
+            printf(" +- not known");
         putchar('\n');
     }
     if (isfinite(c->metrics.mse_noise))

@@ -10,7 +10,8 @@ float metrics_display(float v, float gain) {
 
 // Sums over values of squared errors and of their variance under Gaussian noise of variance s2:
 // (d + n)^2 with n ~ N(0, s2) has the variance 4 d^2 s2 + 2 s2^2, and the expectation of the
-// measured e^2 is d^2 + s2; so 4 e^2 s2 - 2 s2^2 estimates it.
+// measured e^2 is d^2 + s2; so 4 e^2 s2 - 2 s2^2 estimates it. Its sum is below 0 where the s2 are
+// badly known themselves, or where the pictures share their noise: then it tells nothing.
 struct squares {
     double sum, variance, noise;
 };
@@ -22,7 +23,7 @@ static void add_square(struct squares *q, double e, double s2, double weight) {
 }
 
 static struct estimate finish_squares(const struct squares *q, double n, bool known) {
-    return (struct estimate){q->sum / n, known ? sqrt(fmax(q->variance, 0)) / n : NAN};
+    return (struct estimate){q->sum / n, known && q->variance >= 0 ? sqrt(q->variance) / n : NAN};
 }
 
 struct sums {

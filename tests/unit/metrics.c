@@ -160,6 +160,29 @@ static void claimed_errors_are_the_spread_of_repeats(void) {
     image_finish(&variance);
 }
 
+// Squared errors of less than half the variance: the noise cannot be what it is said to be, and what
+// it leaves of the errors is not known. No noise at all leaves all of them.
+static void impossible_noise_has_no_interval(void) {
+    struct image ref, test, variance;
+    struct metrics m;
+    fill(&ref, 8, 8, 0.5f);
+    fill(&test, 8, 8, 0.51f);
+    fill(&variance, 8, 8, 0.01f);
+    const struct metrics_input in = {.ref = &ref, .test = &test, .test_variance = &variance,
+                                     .eps = -1};
+    metrics_measure(&in, &m);
+    CHECK(isnan(m.mse.error) && isnan(m.relmse.error) && isnan(m.psnr.error));
+    CHECK_NEAR(m.mse_noise, 0.01, 1e-8);
+    CHECK(m.mean_ratio.error > 0);
+    image_finish(&variance);
+    fill(&variance, 8, 8, 0);
+    metrics_measure(&in, &m);
+    CHECK(m.mse.error == 0 && m.relmse.error == 0 && m.psnr.error == 0);
+    image_finish(&ref);
+    image_finish(&test);
+    image_finish(&variance);
+}
+
 int main(void) {
     constants_have_closed_forms();
     relmse_knows_no_exposure();
@@ -167,5 +190,6 @@ int main(void) {
     ssim_is_that_of_wang_2004();
     odd_values_are_left_out_and_counted();
     claimed_errors_are_the_spread_of_repeats();
+    impossible_noise_has_no_interval();
     return check_result();
 }
