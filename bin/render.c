@@ -85,7 +85,8 @@ static const struct option_spec options[] = {
      .help = "masks by name: object,material (Cryptomatte 1.2), from the picture's first\n"
              "256 samples"},
     {.name = "variance", .type = OPTION_FLAG, .offset = AT(variance),
-     .help = "write the squared standard error of each pixel as layer `variance`"},
+     .help = "write the squared standard error of each pixel as layer `variance`; one\n"
+             "sample per pixel does not tell it"},
     {.name = "light-groups", .type = OPTION_FLAG, .offset = AT(light_groups),
      .help = "write a layer per emitter, or per `group` name"},
     {.name = "paths", .type = OPTION_FLAG, .offset = AT(paths),
@@ -148,6 +149,7 @@ static int trace_and_write(const struct values *v, const char *command, struct j
         job_trace(job, film, &o.render);
         progress_end(&l->progress);
         o.rejected = film_rejected(film);
+        o.one_sample = (v->variance || v->noise > 0) && film_samples(film) == 1;
         o.keeping = l->checkpoint.spent;
         o.clamp = v->clamp;
         o.clamped = film_clamped(film);

@@ -18,6 +18,8 @@ void render_report_warnings(const struct render_outcome *o) {
     if (o->clamped >= 0)
         log_warn("--clamp %g removed %.3g %% of the picture's light (layer clamped)", o->clamp,
                  100 * o->clamped);
+    if (o->one_sample)
+        log_warn("the layer variance of one sample per pixel is 0 and tells nothing");
     if (o->overflows)
         log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
                  o->overflows);
