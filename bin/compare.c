@@ -26,6 +26,22 @@ static bool options_fit(const struct compare_options *o) {
     return !test && !map;
 }
 
+// What is not finite was left out of the metrics: with it no limit is known to hold.
+static bool limits_hold(const struct compare_options *o, const struct comparison *c) {
+    bool hold = true, exceeded;
+    for (size_t i = 0; i < o->limits.count; i++) {
+        comparison_check_limit(o->limits.items[i], c, &exceeded);
+        if (exceeded)
+            log_error("%s: exceeds the limit %s", o->request.test, o->limits.items[i]);
+        hold = hold && !exceeded;
+    }
+    if (o->limits.count == 0 || c->metrics.left_out == 0)
+        return hold;
+    log_error("%s: no limit of --fail-above holds where values of it or of %s are not finite",
+              o->request.test, o->request.ref);
+    return false;
+}
+
 static int run(const void *values, const char *command) {
     const struct compare_options *o = values;
     struct comparison_request request = o->request;
@@ -44,14 +60,8 @@ static int run(const void *values, const char *command) {
         comparison_print_json(&c);
     else
         comparison_print(&c);
-    int code = c.tested && !c.ztest.pass ? EXIT_FAILED : EXIT_DONE;
-    for (size_t i = 0; i < o->limits.count; i++) {
-        comparison_check_limit(o->limits.items[i], &c, &exceeded);
-        if (exceeded)
-            log_error("%s: exceeds the limit %s", o->request.test, o->limits.items[i]);
-        code = exceeded ? EXIT_FAILED : code;
-    }
-    return code;
+    const bool passed = !c.tested || c.ztest.pass;
+    return limits_hold(o, &c) && passed ? EXIT_DONE : EXIT_FAILED;
 }
 
 #define AT(member) offsetof(struct compare_options, member)
@@ -64,7 +74,8 @@ static const struct option_spec options[] = {
      .help = "write a picture of the difference"},
     {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",
      .help = "exit 1 if METRIC is above X: mean (|ratio - 1|), mse, relmse, flip,\n"
-             "ldr-flip, ssim (1 - SSIM), psnr (-PSNR)"},
+             "ldr-flip, ssim (1 - SSIM), psnr (-PSNR); also if any value of REF or\n"
+             "TEST is not finite"},
     {.name = "eps", .type = OPTION_NUMBER, .offset = AT(request.eps), .argument = "E",
      .help = "relMSE divides by ref^2 + E; -1: 1e-3 of the squared mean of REF", .def = "-1",
      .min = -1, .max = 1e30},

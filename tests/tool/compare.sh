@@ -69,4 +69,17 @@ done
 near "$out" channels.0.mean 0.996078431 # signed, 1 / 1.01: twice the reference is red
 near "$out" channels.2.mean 0
 expect 1 "$relume" compare "$one" "$two" --map "$folder/no/map.png"
+
+# One pixel that is not finite is left out of the metrics, and no limit holds.
+odd=$folder/odd.pfm
+head -c -12 "$one" >"$odd"
+printf '\0\0\xc0\x7f\0\0\xc0\x7f\0\0\xc0\x7f' >>"$odd"
+expect 0 "$relume" compare "$one" "$odd" --json
+near "$out" left_out 3
+near "$out" mse.value 0
+for limit in mse=1000 relmse=1000 mean=1000; do
+    expect 1 "$relume" compare "$one" "$odd" --fail-above $limit
+    contains "$err" "are not finite"
+    expect 1 "$relume" compare "$odd" "$one" --fail-above $limit
+done
 finish
