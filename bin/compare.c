@@ -67,9 +67,11 @@ static int run(const void *values, const char *command) {
 #define AT(member) offsetof(struct compare_options, member)
 static const struct option_spec options[] = {
     {.name = "ztest", .type = OPTION_TEXT, .offset = AT(request.variance), .argument = "VAR.exr",
-     .help = "variance of REF's single-sample estimates: also test whether the\n"
-             "pictures agree within their noise, by pixels, 8x8 blocks and means;\n"
-             "exit 1 if not"},
+     .help = "also test whether the pictures agree within their noise, by pixels,\n"
+             "8x8 blocks and means; exit 1 if not. VAR: the variance of REF's single-\n"
+             "sample estimates, as Mitsuba's ..._var.exr, or a long rendering of the\n"
+             "scene by --sampler independent with a layer `variance`, which is\n"
+             "multiplied by the samples it says"},
     {.name = "map", .type = OPTION_TEXT, .offset = AT(request.map_path), .argument = "OUT.png",
      .help = "write a picture of the difference"},
     {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",
@@ -93,8 +95,10 @@ static const struct option_spec options[] = {
      .help = "TEST's samples per pixel; 0: what the file says", .def = "0", .min = 0,
      .max = 1e15},
     {.name = "ref-samples", .type = OPTION_NUMBER, .offset = AT(request.ref_samples),
-     .argument = "N", .help = "REF's samples per pixel", .def = "32000", .min = 1,
-     .max = 1e15},
+     .argument = "N",
+     .help = "REF's samples per pixel; 0: what the file says, and if it does not,\n"
+             "32000 (Mitsuba's references), of which pixels then disregard the noise",
+     .def = "0", .min = 0, .max = 1e15},
     OPTION_GROUP(WITH_MAP),
     {.name = "map-kind", .type = OPTION_CHOICE, .offset = AT(map), .argument = "KIND",
      .help = "HDR-FLIP in magma, or (test-ref)/ref with red above and blue\n"
@@ -119,9 +123,11 @@ const struct subcommand subcommand_compare = {
         {.options = options,
          .arguments = arguments,
          .description = "Where a file has a layer `variance` (render --variance), each value comes "
-                        "with the 95 %\nconfidence interval that this noise leaves it. A crop is "
-                        "compared with its part of REF.",
+                        "with the 95 %\nconfidence interval that this noise leaves it, if it can "
+                        "be told: not from one\nsample per pixel. A crop is compared with its "
+                        "part of REF.",
          .examples = "  relume compare ref.exr out.exr --map difference.png\n"
+                     "  relume compare ref.exr out.exr --ztest ref.exr\n"
                      "  relume compare ref.exr out.exr --ztest ref_var.exr --samples 868\n"
                      "  relume compare big.exr out.exr --downsample 2 --fail-above relmse=0.001\n"},
     .run = run,

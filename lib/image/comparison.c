@@ -9,11 +9,15 @@
 
 const char *const comparison_map_names[] = {"flip", "signed", NULL};
 
+static const double MITSUBA_REF_SAMPLES = 32000; // of the references of Mitsuba 3's render tests
+
 // One picture with what is known of its noise.
 struct side {
     const char *path;
     struct image rgb, variance; // variance.pixels == NULL: not known
-    double samples;             // attribute "samples", or 0
+    double samples;             // per pixel, as the file says; 0: it does not
+    bool rendered;              // by `relume render`
+    bool one_sample;            // has a layer `variance` of one sample: not taken
 };
 
 static void finish_side(struct side *s) {
@@ -21,16 +25,28 @@ static void finish_side(struct side *s) {
     image_finish(&s->variance);
 }
 
+static double read_count(const struct image *im, const char *attribute) {
+    const struct image_attribute *a = image_find_attribute(im, attribute);
+    return a && !a->text && a->number > 0 && isfinite(a->number) ? a->number : 0;
+}
+
 static bool read_side(const char *path, struct side *s) {
     struct image im;
     *s = (struct side){.path = path};
     if (!image_read(path, &im))
         return false;
+    s->samples = read_count(&im, "relume.samples");
+    s->rendered = s->samples > 0;
+    if (!s->rendered) // other renderers
+        s->samples = read_count(&im, "samples");
     bool good = image_to_rgb(&im, &s->rgb);
-    if (good && (image_find_channel(&im, "variance.R") >= 0))
-        good = image_layer_to_rgb(&im, "variance", path, &s->variance);
-    const struct image_attribute *samples = image_find_attribute(&im, "samples");
-    s->samples = samples && !samples->text ? samples->number : 0;
+    if (good && image_find_channel(&im, "variance.R") >= 0) {
+        s->one_sample = s->samples == 1;
+        if (s->one_sample)
+            log_warn("%s: its layer variance is of one sample per pixel and tells nothing", path);
+        else
+            good = image_layer_to_rgb(&im, "variance", path, &s->variance);
+    }
     image_finish(&im);
     return good;
 }
@@ -46,6 +62,7 @@ static bool downsample_side(struct side *s, int factor) {
     if (!image_downsample(&s->rgb, factor, &small))
         return false;
     replace(&s->rgb, &small);
+    s->samples *= (double)factor * factor;
     if (!s->variance.pixels)
         return true;
     if (!image_downsample(&s->variance, factor, &small))
@@ -115,33 +132,74 @@ static bool match_sizes(const struct comparison_request *request, struct side *r
     return false;
 }
 
+// The variance of single-sample estimates into v->rgb: what a file holds as its picture, or its layer
+// `variance`, squared standard errors of the means of all samples, times their number.
+static bool read_single_variance(const struct comparison_request *request, struct side *v,
+                                 bool *of_layer) {
+    if (!read_side(request->variance, v))
+        return false;
+    *of_layer = v->variance.pixels;
+    if (v->one_sample) {
+        log_error("%s: the z-test needs a variance of more than one sample per pixel", v->path);
+        return false;
+    }
+    if (!*of_layer && v->rendered) {
+        log_error("%s: is a picture without a layer variance (render --variance)", v->path);
+        return false;
+    }
+    if (!*of_layer)
+        return true;
+    const double samples = v->samples > 0 ? v->samples : request->ref_samples;
+    if (!(samples > 0)) {
+        log_error("%s: does not say its samples per pixel: its layer variance needs "
+                  "--ref-samples N", v->path);
+        return false;
+    }
+    replace(&v->rgb, &v->variance);
+    v->variance = (struct image){0};
+    const size_t n = 3 * (size_t)v->rgb.width * (size_t)v->rgb.height;
+    for (size_t i = 0; i < n; i++)
+        v->rgb.pixels[i] *= (float)samples;
+    return true;
+}
+
+static void test_noise(const struct comparison_request *request, const struct side *ref,
+                       const struct side *test, const struct side *variance, bool of_layer,
+                       struct comparison *result) {
+    const double told = request->ref_samples > 0 ? request->ref_samples : ref->samples;
+    const struct ztest_input in = {
+        .ref = &ref->rgb,
+        .test = &test->rgb,
+        .variance = &variance->rgb,
+        .variance_of_rgb = of_layer,
+        .samples = result->samples,
+        .ref_samples = told > 0 ? told : MITSUBA_REF_SAMPLES,
+        .pixels_of_noisy_ref = told > 0,
+        .test_variance = test->variance.pixels ? &test->variance : NULL,
+    };
+    result->ref_samples = in.ref_samples;
+    ztest_run(&in, &result->ztest);
+    result->tested = true;
+}
+
 static bool run_ztest(const struct comparison_request *request, const struct side *ref,
                       const struct side *test, struct comparison *result) {
-    const double samples = request->samples > 0 ? request->samples : test->samples;
-    struct side variance;
-    if (!(samples > 0)) {
+    struct side variance = {0};
+    bool of_layer;
+    result->samples = request->samples > 0 ? request->samples : test->samples;
+    if (!(result->samples > 0)) {
         log_error("%s: does not say its samples per pixel: the z-test needs --samples N",
                   test->path);
         return false;
     }
-    if (!read_side(request->variance, &variance))
-        return false;
-    const bool good = same_size(&variance.rgb, &ref->rgb);
-    if (good) {
-        const struct ztest_input in = {
-            .ref = &ref->rgb,
-            .test = &test->rgb,
-            .variance = &variance.rgb,
-            .samples = samples,
-            .ref_samples = request->ref_samples,
-            .test_variance = test->variance.pixels ? &test->variance : NULL,
-        };
-        ztest_run(&in, &result->ztest);
-        result->tested = true;
-    } else {
+    bool good = read_single_variance(request, &variance, &of_layer);
+    if (good && !same_size(&variance.rgb, &ref->rgb)) {
         log_error("%s: is %d x %d pixels, expected %d x %d as the pictures compared", variance.path,
                   variance.rgb.width, variance.rgb.height, ref->rgb.width, ref->rgb.height);
+        good = false;
     }
+    if (good)
+        test_noise(request, ref, test, &variance, of_layer, result);
     finish_side(&variance);
     return good;
 }
@@ -185,11 +243,13 @@ static bool write_signed_map(const char *path, const struct image *ref, const st
 
 static bool measure(const struct comparison_request *request, const struct side *ref,
                     const struct side *test, struct comparison *result) {
+    // The noise of one picture alone, where the other's is there but not known, is too little.
+    const bool known = !ref->one_sample && !test->one_sample;
     const struct metrics_input in = {
         .ref = &ref->rgb,
         .test = &test->rgb,
-        .ref_variance = ref->variance.pixels ? &ref->variance : NULL,
-        .test_variance = test->variance.pixels ? &test->variance : NULL,
+        .ref_variance = known && ref->variance.pixels ? &ref->variance : NULL,
+        .test_variance = known && test->variance.pixels ? &test->variance : NULL,
         .eps = request->eps,
         .exposure = request->exposure,
         .threads = request->threads,

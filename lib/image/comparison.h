@@ -15,9 +15,12 @@ extern const char *const comparison_map_names[]; // NULL-terminated
 
 struct comparison_request {
     const char *ref, *test;
-    const char *variance; // of a single-sample estimate of ref: do the z-test; NULL: no
-    double samples;       // of test, per pixel, for the z-test; 0: from test's attribute "samples"
-    double ref_samples;   // of ref
+    // Of a single-sample estimate of ref, or a picture with a layer `variance`: do the z-test; NULL:
+    // no.
+    const char *variance;
+    // Per pixel, of test and of ref, for the z-test; 0: what the files' attributes "relume.samples" or
+    // "samples" say (times the pixels of a box of `downsample`), and 32000 where ref has none.
+    double samples, ref_samples;
     double eps, exposure; // as in struct metrics_input
     double pixels_per_degree;
     int downsample;       // box; a picture that is this much larger than the other, or both
@@ -32,9 +35,11 @@ struct comparison {
     struct estimate flip_hdr, flip_ldr;
     struct flip_exposures exposures;
     bool tested;
+    double samples, ref_samples; // that the z-test took
     struct ztest_result ztest;
 };
 
-// Reads both files (and layers `variance` in them: squared standard errors), takes the part of the
+// Reads both files (and layers `variance` in them: squared standard errors, which one sample cannot
+// tell: no interval is then known), takes the part of the
 // larger one that a crop covers, and measures. false after an error message.
 bool comparison_run(const struct comparison_request *request, struct comparison *result);

@@ -84,6 +84,8 @@ void comparison_print_json(const struct comparison *c) {
     json_add_count(out, "left_out", (int64_t)c->metrics.left_out);
     if (c->tested) {
         struct json *z = json_add_object(out, "ztest");
+        json_add_number(z, "samples", c->samples);
+        json_add_number(z, "ref_samples", c->ref_samples);
         add_level(z, "pixels", &c->ztest.pixels);
         add_level(z, "blocks", &c->ztest.blocks);
         add_level(z, "mean", &c->ztest.mean);

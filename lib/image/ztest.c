@@ -29,7 +29,7 @@ static void to_xyz(const float *rgb, double xyz[3]) {
 
 // Variances of X, Y, Z from those of R, G, B when nothing is known of their correlation: 1 is
 // assumed, the upper bound (noise of a path tracer is nearly grey).
-static void variance_to_xyz(const float *rgb, double xyz[3]) {
+static void rgb_variance_to_xyz(const float *rgb, double xyz[3]) {
     for (int i = 0; i < 3; i++) {
         double error = 0;
         for (int j = 0; j < 3; j++)
@@ -64,15 +64,16 @@ static void finish_level(struct ztest_level *l) {
 
 static void add_pixel(const struct ztest_input *in, size_t p, struct ztest_level *pixels,
                       struct sums *s) {
+    const double scale = 1 / in->samples + (in->pixels_of_noisy_ref ? 1 / in->ref_samples : 0);
     double ref[3], test[3], single[3], own[3] = {0};
     to_xyz(in->ref->pixels + 3 * p, ref);
     to_xyz(in->test->pixels + 3 * p, test);
-    to_xyz(in->variance->pixels + 3 * p, single);
+    (in->variance_of_rgb ? rgb_variance_to_xyz : to_xyz)(in->variance->pixels + 3 * p, single);
     if (in->test_variance)
-        variance_to_xyz(in->test_variance->pixels + 3 * p, own);
+        rgb_variance_to_xyz(in->test_variance->pixels + 3 * p, own);
     for (int i = 0; i < 3; i++) {
         const double d = test[i] - ref[i];
-        count_value(pixels, d * sqrt(in->samples / fmax(single[i], smallest_variance)));
+        count_value(pixels, d / sqrt(fmax(single[i], smallest_variance) * scale));
         s->ref[i] += ref[i];
         s->difference[i] += d;
         s->variance[i] += single[i] / in->ref_samples +

@@ -82,4 +82,83 @@ for limit in mse=1000 relmse=1000 mean=1000; do
     contains "$err" "are not finite"
     expect 1 "$relume" compare "$odd" "$one" --fail-above $limit
 done
+
+# Our own pictures: a floor under a lamp, by independent samples.
+cat >"$folder/scene.xml" <<'END'
+<scene version="3.0.0">
+    <default name="light" value="2"/>
+    <integrator type="path"><integer name="max_depth" value="2"/></integrator>
+    <sensor type="perspective">
+        <transform name="to_world"><lookat origin="0,3,3" target="0,0,0" up="0,1,0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="12"/>
+            <rfilter type="box"/></film>
+        <sampler type="independent"/>
+    </sensor>
+    <shape type="rectangle">
+        <transform name="to_world"><rotate x="1" angle="-90"/><scale value="5"/></transform></shape>
+    <shape type="rectangle">
+        <transform name="to_world"><rotate x="1" angle="90"/><translate y="4"/></transform>
+        <emitter type="area"><spectrum name="radiance" value="$light"/></emitter></shape>
+</scene>
+END
+render() {
+    expect 0 "$relume" render "$folder/scene.xml" -o "$folder/$1.exr" -q --spp "${@:2}"
+}
+render ref 256 --variance
+render same 32 --variance --seed 5
+render brighter 32 --variance --seed 5 -D light=2.2
+render plain 256
+[ -z "$err" ] || fail "a warning: $err"
+render single 1 --variance
+contains "$err" "variance of one sample"
+ref=$folder/ref.exr same=$folder/same.exr
+
+# Samples are those the files say, and the variance that of the layer.
+expect 0 "$relume" compare "$ref" "$same" --ztest "$ref" --json
+near "$out" ztest.samples 32
+near "$out" ztest.ref_samples 256
+expect 1 "$relume" compare "$ref" "$folder/brighter.exr" --ztest "$ref"
+expect 0 "$relume" compare "$ref" "$same" --ztest "$ref" --samples 30 --ref-samples 200 --json
+near "$out" ztest.samples 30
+near "$out" ztest.ref_samples 200
+expect 0 "$relume" compare "$one" "$one" --ztest "$one" --samples 4 --json
+near "$out" ztest.ref_samples 32000
+expect 1 "$relume" compare "$ref" "$same" --ztest "$folder/plain.exr"
+contains "$err" "plain.exr: is a picture without a layer variance"
+expect 1 "$relume" compare "$ref" "$same" --ztest "$folder/single.exr"
+contains "$err" "single.exr: the z-test needs a variance of more than one sample"
+
+# rename FILE FROM TO: an attribute of ref, and another one so that the header keeps its length.
+rename() {
+    python3 - "$ref" "$folder/$1" "$2" "$3" <<'END'
+import sys
+data = open(sys.argv[1], "rb").read()
+old, new = (name.encode() + b"\0" for name in sys.argv[3:])
+seed = b"relume.seed"
+assert data.count(old) == 1 and data.count(seed + b"\0") == 1
+data = data.replace(seed + b"\0", seed + b"x" * (len(old) - len(new)) + b"\0").replace(old, new)
+open(sys.argv[2], "wb").write(data)
+END
+}
+rename other.exr relume.samples samples
+expect 0 "$relume" compare "$folder/other.exr" "$same" --ztest "$folder/other.exr" --json
+near "$out" ztest.ref_samples 256
+rename silent.exr relume.samples silence
+expect 1 "$relume" compare "$ref" "$same" --ztest "$folder/silent.exr"
+contains "$err" "silent.exr: does not say its samples per pixel"
+expect 0 "$relume" compare "$ref" "$same" --ztest "$folder/silent.exr" --ref-samples 256
+
+# Intervals: where the pictures differ by more than noise; not of one picture with itself, nor of
+# one sample.
+expect 0 "$relume" compare "$ref" "$folder/brighter.exr"
+[[ $out == *"MSE "*" +- "*" (95 %)"* && $out != *"not known"* ]] || fail "no intervals: $out"
+expect 0 "$relume" compare "$ref" "$ref"
+contains "$out" "MSE          0 +- not known"
+expect 0 "$relume" compare "$ref" "$ref" --json
+contains "$out" '"mse": {
+    "value": 0.0,
+    "error": null'
+expect 0 "$relume" compare "$ref" "$folder/single.exr"
+contains "$err" "single.exr: its layer variance is of one sample per pixel"
+[[ $out != *"+-"* ]] || fail "an interval of one sample: $out"
 finish

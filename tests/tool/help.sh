@@ -212,7 +212,7 @@ colorspaces: [!<ColorSpace> {name: lin_rec709}]
 END
 echo '{"steps": [{"set": "cup.exponent=40"}]}' >session.json
 "$relume" render scene.xml -o big.exr --size 32x32 --quiet
-"$relume" render scene.xml -o room.exr --size 16x16 --aov albedo --quiet
+"$relume" render scene.xml -o room.exr --size 16x16 --aov albedo --variance --quiet
 for name in $(names subcommand); do
     for picture in ref ref_var out; do
         cp room.exr $picture.exr # an example may have written one of them

@@ -147,6 +147,28 @@ static void equal_pictures_without_variance_agree(void) {
     image_finish(&p.variance);
 }
 
+// Red noise of variance 4 in one pixel that differs by 1 in red: z is of red alone in X, Y and Z; the
+// noise of a reference of as many samples halves its square.
+static void variances_of_rgb_are_of_channels(void) {
+    struct image ref, test, variance;
+    struct ztest_result z;
+    CHECK(image_init(&ref, 1, 1, 3) && image_init(&test, 1, 1, 3) && image_init(&variance, 1, 1, 3));
+    test.pixels[0] = 1;
+    variance.pixels[0] = 4;
+    struct ztest_input in = {.ref = &ref, .test = &test, .variance = &variance,
+                             .variance_of_rgb = true, .samples = SAMPLES, .ref_samples = SAMPLES};
+    ztest_run(&in, &z);
+    CHECK_NEAR(z.pixels.largest_z, sqrt(SAMPLES / 4.), 1e-6);
+    CHECK_NEAR(z.mean.largest_z, sqrt(SAMPLES / 8.), 1e-6);
+    CHECK_NEAR(z.blocks.largest_z, sqrt(SAMPLES / 8.), 1e-6);
+    in.pixels_of_noisy_ref = true;
+    ztest_run(&in, &z);
+    CHECK_NEAR(z.pixels.largest_z, sqrt(SAMPLES / 8.), 1e-6);
+    image_finish(&ref);
+    image_finish(&test);
+    image_finish(&variance);
+}
+
 int main(void) {
     CHECK_NEAR(ztest_p_value(1.959963985), 0.05, 1e-9);
     CHECK_NEAR(ztest_p_value(-5), 5.733031e-7, 1e-12);
@@ -155,5 +177,6 @@ int main(void) {
     a_small_uniform_bias_shows_in_the_mean_alone();
     a_wrong_spot_shows_in_pixels_and_blocks();
     equal_pictures_without_variance_agree();
+    variances_of_rgb_are_of_channels();
     return check_result();
 }
