@@ -5,10 +5,35 @@
 
 #include <string.h>
 
+// Beyond this Embree's numbers overflow, and its checked builds end the program; so they do for what
+// is no number at all. Such rays, of cameras beyond all scenes, meet nothing.
+static const float FARTHEST = 1.8e18f;
+
+static bool is_traceable(const struct ray *r) {
+    const vec3 size = absolute(r->o) + absolute(r->d);
+    return size[0] <= FARTHEST && size[1] <= FARTHEST && size[2] <= FARTHEST && r->tmin >= 0 &&
+           r->tmax >= 0;
+}
+
+// Which of them are; the others are put where Embree does not stumble over them.
+static wide_mask keep_traceable(struct accel_rays *r) {
+    const wide farthest = wide_of(FARTHEST);
+    const wide_mask x = wide_whole(wide_abs(r->o.x) + wide_abs(r->d.x) <= farthest);
+    const wide_mask y = wide_whole(wide_abs(r->o.y) + wide_abs(r->d.y) <= farthest);
+    const wide_mask z = wide_whole(wide_abs(r->o.z) + wide_abs(r->d.z) <= farthest);
+    const wide_mask all = wide_both(wide_both(x, y), wide_both(z, r->tmin >= 0));
+    wide *const numbers[] = {&r->o.x, &r->o.y, &r->o.z, &r->d.x, &r->d.y, &r->d.z, &r->tmin};
+    for (int i = 0; i < 7 && wide_bits(all) != WIDE_ALL; i++)
+        *numbers[i] = wide_select(all, *numbers[i], wide_of(0));
+    return wide_both(all, r->tmax >= 0);
+}
+
 static struct RTCRay to_embree(const struct ray *r) {
-    return (struct RTCRay){.org_x = r->o[0], .org_y = r->o[1], .org_z = r->o[2],
-                           .dir_x = r->d[0], .dir_y = r->d[1], .dir_z = r->d[2],
-                           .tnear = r->tmin, .tfar = r->tmax, .mask = ~0u};
+    static const struct ray none = {.d = {0, 0, 1}, .tmin = 1};
+    const struct ray *from = is_traceable(r) ? r : &none;
+    return (struct RTCRay){.org_x = from->o[0], .org_y = from->o[1], .org_z = from->o[2],
+                           .dir_x = from->d[0], .dir_y = from->d[1], .dir_z = from->d[2],
+                           .tnear = from->tmin, .tfar = from->tmax, .mask = ~0u};
 }
 
 bool accel_intersect(const struct accel *a, const struct ray *ray, struct accel_hit *hit) {
@@ -47,9 +72,9 @@ bool accel_occluded(const struct accel *a, const struct ray *ray) {
 static void packet_from(const struct ray rays[ACCEL_PACKET], uint32_t active, int valid[ACCEL_PACKET],
                         struct RTCRay16 *p) {
     for (int i = 0; i < ACCEL_PACKET; i += WIDE_LANES) {
-        const wide_mask traced = wide_mask_of(active >> i);
         struct accel_rays r;
         few_packet_rays(rays + i, active >> i, &r);
+        const wide_mask traced = wide_both(wide_mask_of(active >> i), keep_traceable(&r));
         memcpy(valid + i, &traced, sizeof traced);
         memcpy(p->org_x + i, &r.o.x, sizeof r.o.x);
         memcpy(p->org_y + i, &r.o.y, sizeof r.o.y);
@@ -95,7 +120,7 @@ void accel_intersect16(const struct accel *a, const struct ray rays[ACCEL_PACKET
     rtcIntersect16(valid, a->world, &context, &rh);
 #endif
     for (int i = 0; i < ACCEL_PACKET; i++) {
-        if (!valid[i])
+        if (!(active >> i & 1))
             continue;
         const unsigned instance = rh.hit.instID[0][i];
         hits[i] = (struct accel_hit){

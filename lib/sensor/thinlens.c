@@ -18,7 +18,7 @@ static const struct param params[] = {
     PROJECTIVE_PARAMS(thinlens),
     FIELD_OF_VIEW_PARAMS(thinlens),
     {"aperture_radius", PARAM_FLOAT, offsetof(struct thinlens, aperture_radius), .min = 0,
-     .max = 1e30, .unit = "m", .help = "radius of the lens; 0 is a pinhole"},
+     .max = 1e18, .unit = "m", .help = "radius of the lens; 0 is a pinhole"},
     {"focus_distance", PARAM_FLOAT, offsetof(struct thinlens, focus_distance), .min = 1e-30,
      .max = 1e30, .unit = "m", .help = "from lens to the sharp plane; not given: far_clip",
      .optional = true},
