@@ -2,18 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bsdf/bsdf.h"
-#include "filter/filter.h"
+#include "driver/job.h"
 #include "fuzz.h"
-#include "integrator/integrator.h"
-#include "light/light.h"
-#include "medium/medium.h"
-#include "phase/phase.h"
-#include "sampler/sampler.h"
-#include "scene/scene.h"
-#include "sensor/sensor.h"
-#include "texture/texture.h"
-#include "world/world.h"
 
 // What a scene promises once it has been read.
 static const char *scene_fault(const struct scene *s) {
@@ -38,24 +28,22 @@ static const char *scene_fault(const struct scene *s) {
     return NULL;
 }
 
-// Reads the scene and prepares all that stands in it.
+// Reads the scene, prepares all that stands in it and traces some paths.
 static bool read_scene(const char *path) {
-    const struct scene_options options = {
-        .registries = {&textures, &bsdfs, &lights, &sensors, &samplers, &filters, &integrators, &volumes, &phases,
-                       &media},
-        .threads = 1};
-    struct scene *s = scene_read(path, &options);
-    if (!s)
+    const struct job_options options = {
+        .scene = path, .spp = 1, .threads = 1, .max_depth = 6, .reading = {.width = 8, .height = 8}};
+    struct job job;
+    struct render_result result;
+    if (!job_open(&job, &options))
         return false;
-    const char *fault = scene_fault(s);
+    const char *fault = scene_fault(job.scene);
     if (fault) {
         fprintf(stderr, "%s: was read, but %s\n", path, fault);
         abort();
     }
-    struct world *w = world_create(s, 1);
-    world_destroy(w);
-    scene_destroy(s);
-    return w != NULL;
+    film_destroy(job_render(&job, &result));
+    job_close(&job);
+    return true;
 }
 
 int main(int argc, char **argv) {
