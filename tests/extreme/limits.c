@@ -49,7 +49,7 @@ static void roughness_below_the_switch_is_smooth(void) {
          "<bsdf type='conductor'><string name='material' value='Au'/></bsdf>"},
         {"<bsdf type='roughdielectric'><float name='alpha' value='%g'/></bsdf>",
          "<bsdf type='dielectric'/>"},
-        // plastic averages the coat's inside more exactly, and so is 0.4 % brighter
+        // the coat's inside is averaged otherwise than in plastic (roughplastic.c)
         {"<bsdf type='roughplastic'><float name='alpha' value='%g'/></bsdf>",
          "<bsdf type='roughplastic'><float name='alpha' value='0'/></bsdf>"},
     };
