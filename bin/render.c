@@ -132,7 +132,8 @@ static bool all_can(bool can) {
 static int trace_and_write(const struct values *v, const char *command, struct job *job,
                            struct film *film, struct listener *l) {
     struct render_outcome o = {.output = v->output};
-    const struct image_exr_options exr = {.half = v->half, .half_overflows = &o.overflows};
+    const struct image_exr_options exr = {.half = v->half, .half_overflows = &o.half_overflows,
+                                          .overflows = &o.overflows};
     const struct checkpoint_options keeping = {
         .output = v->output, .command = command, .version = RELUME_VERSION, .seconds = v->checkpoint,
         .preview_seconds = v->preview, .resume = v->resume, .exr = &exr,

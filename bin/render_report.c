@@ -21,8 +21,11 @@ void render_report_warnings(const struct render_outcome *o) {
     if (o->one_sample)
         log_warn("the layer variance of one sample per pixel is 0 and tells nothing");
     if (o->overflows)
-        log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
+        log_warn("%" PRIu64 " values were beyond the range of 32 bits and became infinite",
                  o->overflows);
+    if (o->half_overflows)
+        log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
+                 o->half_overflows);
 }
 
 void render_report(const struct render_outcome *o) {
@@ -50,7 +53,8 @@ void render_report_json(const struct job *job, const struct render_outcome *o) {
     json_add_count(j, "shadow_rays", (int64_t)t->shadow_rays);
     json_add_count(j, "truncated_paths", (int64_t)t->truncated);
     json_add_count(j, "rejected_samples", (int64_t)o->rejected);
-    json_add_count(j, "half_overflows", (int64_t)o->overflows);
+    json_add_count(j, "overflows", (int64_t)o->overflows);
+    json_add_count(j, "half_overflows", (int64_t)o->half_overflows);
     if (t->noise >= 0)
         json_add_number(j, "noise", t->noise);
     if (o->clamped >= 0)

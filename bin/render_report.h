@@ -7,7 +7,7 @@
 struct render_outcome {
     const char *output;
     struct render_result render;
-    uint64_t rejected, overflows;
+    uint64_t rejected, overflows, half_overflows; // values beyond the range of float, of half
     bool one_sample;       // a layer `variance` of one sample
     double clamp, clamped; // limit; share of light it removed, negative: there is none
     double keeping;        // seconds of the render that went to its journal and previews

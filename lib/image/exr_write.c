@@ -31,14 +31,25 @@ static bool is_identity(const char *channel) {
            strcmp(channel, "instance.Y") == 0;
 }
 
-// Finite values that round to infinity as a half: beyond 65504 + 16, half the last step.
-static uint64_t count_half_overflows(const struct image *im) {
+// Values that are not finite, and finite ones that round to infinity as a half: beyond 65504 + 16,
+// half the last step.
+static void count_overflows(const struct image *im, const struct image_exr_options *o) {
     const size_t pixels = (size_t)im->width * (size_t)im->height, n = (size_t)im->channels;
-    uint64_t count = 0;
+    uint64_t infinite = 0, half = 0;
+    bool *counts = mem_array(n, sizeof *counts);
     for (size_t c = 0; c < n; c++)
-        for (size_t i = 0; i < pixels && !is_identity(im->channel_names[c]); i++)
-            count += isfinite(im->pixels[i * n + c]) && fabsf(im->pixels[i * n + c]) >= 65520.0f;
-    return count;
+        counts[c] = !is_identity(im->channel_names[c]);
+    for (size_t i = 0; i < pixels; i++)
+        for (size_t c = 0; c < n; c++) {
+            const float v = im->pixels[i * n + c];
+            infinite += counts[c] & !isfinite(v);
+            half += counts[c] & (isfinite(v) && fabsf(v) >= 65520.0f);
+        }
+    mem_free(counts);
+    if (o->overflows)
+        *o->overflows = infinite;
+    if (o->half_overflows)
+        *o->half_overflows = o->half ? half : 0;
 }
 
 static bool add_channels(exr_context_t context, int part, const struct image *im, bool half) {
@@ -213,8 +224,8 @@ bool image_write_exr(const char *path, const struct image *im,
     struct exr_errors errors = {""};
     if (!check_image(path, im) || !file_temp_name(path, temp, sizeof temp))
         return false;
-    if (options->half_overflows)
-        *options->half_overflows = options->half ? count_half_overflows(im) : 0;
+    if (options->overflows || options->half_overflows)
+        count_overflows(im, options);
     if (!write_file(temp, im, options->half, options->threads, &errors)) {
         log_error("%s: cannot be written: %s", path,
                   errors.message[0] ? errors.message : "the library says no more");

@@ -63,6 +63,7 @@ struct image_exr_options {
     bool half;                // 16-bit channels but for numbers that name objects; values beyond
                               // its range become infinite
     uint64_t *half_overflows; // is set to their number; may be NULL
+    uint64_t *overflows;      // to the number of values that no float held; may be NULL
     int threads;              // 0: default
 };
 

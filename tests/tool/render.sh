@@ -77,6 +77,7 @@ near "$out" paths $((16 * 12 * 4))
 near "$out" truncated_paths 0
 contains "$out" '"stopped": false'
 near "$out" rejected_samples 0
+near "$out" overflows 0
 near "$out" half_overflows 0
 expect 0 "$relume" info "$picture" --json
 info=$out
@@ -117,6 +118,11 @@ done
 expect 0 "$relume" render "$scene" -o "$picture" --spp 1 --half -D radiance=1e6 --json
 near "$out" half_overflows $((16 * 12 * 3))
 contains "$err" "$((16 * 12 * 3)) values were beyond the range of half"
+
+# Beyond the range of float, as the square of a radiance of 1e25 is: the same.
+expect 0 "$relume" render "$scene" -o "$picture" --spp 1 --integrator moment -D radiance=1e25 --json
+near "$out" overflows $((16 * 12 * 3))
+contains "$err" "$((16 * 12 * 3)) values were beyond the range of 32 bits"
 
 # The clamp: nothing where nothing is above it, else as much as it says, in the picture as in JSON.
 make_scene clamp.xml '<shape type="sphere"><boolean name="flip_normals" value="true"/>

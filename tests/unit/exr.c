@@ -126,15 +126,16 @@ static void attributes_and_windows_return(void) {
 
 static void half_rounds_and_counts_overflow(void) {
     struct image im, back;
-    uint64_t overflows = 99;
+    uint64_t overflows = 99, infinite = 99;
     const float in[] = {1, 65504, 65519.9f, 65520, -1e30f, INFINITY, 1 + 0x1p-11f, 0x1p-24f, NAN};
     const float out[] = {1,         65504,    65504, INFINITY, -INFINITY,
                          INFINITY, 1,        0x1p-24f};
     CHECK(image_init(&im, 9, 1, 1));
     memcpy(im.pixels, in, sizeof in);
     CHECK(image_write_exr(path, &im,
-                          &(struct image_exr_options){.half = true, .half_overflows = &overflows}));
-    CHECK(overflows == 2);
+                          &(struct image_exr_options){.half = true, .half_overflows = &overflows,
+                                                      .overflows = &infinite}));
+    CHECK(overflows == 2 && infinite == 2);
     CHECK(image_read(path, &back) && back.bits == 16);
     for (int i = 0; i < 8; i++)
         CHECK(back.pixels[i] == out[i]);
