@@ -84,7 +84,7 @@ static const struct option_spec options[] = {
              "the editable form, a file each, OUT.json all in one, for `edited`\n"
              "(measured ones become factors, for the model `halfdifference`)"},
     {.name = "plot", .type = OPTION_TEXT, .offset = AT(plot), .argument = "OUT.svg",
-     .help = "draw the material, as SVG or PNG"},
+     .help = "draw the material, as SVG or PNG", .endings = ".svg or .png"},
     {.name = "kind", .type = OPTION_CHOICE, .offset = AT(kind), .argument = "KIND",
      .help = "of the drawing: in-plane cut or net of f cos (its cube root is the\n"
              "radius), or curve of f against the angle of the half vector", .def = "cut",

@@ -73,7 +73,7 @@ static const struct option_spec options[] = {
              "scene by --sampler independent with a layer `variance`, which is\n"
              "multiplied by the samples it says"},
     {.name = "map", .type = OPTION_TEXT, .offset = AT(request.map_path), .argument = "OUT.png",
-     .help = "write a picture of the difference"},
+     .help = "write a picture of the difference", .endings = ".png"},
     {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",
      .help = "exit 1 if METRIC is above X: mean (|ratio - 1|), mse, relmse, flip,\n"
              "ldr-flip, ssim (1 - SSIM), psnr (-PSNR); also if any value of REF or\n"

@@ -19,7 +19,8 @@ static const struct option_argument arguments[] = {
 
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(out), .argument = "OUT.exr",
-     .help = "the picture to write, with all layers but `variance`", .required = true},
+     .help = "the picture to write, with all layers but `variance`", .endings = ".exr",
+     .required = true},
     {.name = "colour-only", .type = OPTION_FLAG, .offset = AT(denoise.colour_only),
      .help = "leave albedo and normals aside"},
     OPTION_THREADS(struct values, denoise.threads),

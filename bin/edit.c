@@ -30,7 +30,7 @@ static const struct option_argument arguments[] = {
 
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(common.output),
-     .argument = "OUT.exr", .help = "the picture to write"},
+     .argument = "OUT.exr", .help = "the picture to write", .endings = ".exr"},
     {.name = "list", .type = OPTION_FLAG, .offset = AT(list),
      .help = "print what can be edited: objects, terms, numbers and curves, as the changes\n"
              "leave them; no picture"},

@@ -28,7 +28,7 @@ static const struct option_argument arguments[] = {
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = offsetof(struct values, output),
      .argument = "OUT.exr", .help = "the picture to write, with a journal of its own",
-     .required = true},
+     .endings = ".exr", .required = true},
     {.name = "colour-space", .type = OPTION_CHOICE, .offset = offsetof(struct values, space),
      .argument = "NAME", .help = "primaries of the picture, as for render, whatever those of the parts",
      .def = "rec709", .choices = image_space_names},

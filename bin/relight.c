@@ -29,7 +29,7 @@ static const struct option_argument arguments[] = {
 
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(common.output),
-     .argument = "OUT.exr", .help = "the picture to write"},
+     .argument = "OUT.exr", .help = "the picture to write", .endings = ".exr"},
     {.name = "env", .letter = 'e', .type = OPTION_TEXT, .offset = AT(environment), .argument = "FILE",
      .help = "environment, latitude-longitude, in place of the scene's own"},
     {.name = "rotate", .type = OPTION_NUMBER, .offset = AT(rotate), .argument = "DEG", .min = -1e6,

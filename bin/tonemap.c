@@ -93,7 +93,7 @@ static int run(const void *values, const char *command) {
 #define AT(member) offsetof(struct tonemap_options, member)
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(out), .argument = "OUT.png",
-     .help = "the picture to write, 8-bit sRGB", .required = true},
+     .help = "the picture to write, 8-bit sRGB", .endings = ".png", .required = true},
     {.name = "exposure", .letter = 'e', .type = OPTION_NUMBER, .offset = AT(exposure),
      .argument = "STOPS", .help = "multiplies radiance by 2^STOPS first", .def = "0", .min = -60,
      .max = 60},

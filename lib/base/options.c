@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
 #include "base/registry.h"
@@ -122,6 +123,23 @@ static bool parse_rectangle(const struct option_spec *o, const char *text, void 
     return false;
 }
 
+static bool has_ending(const char *endings, const char *path) {
+    char ending[16] = ".";
+    file_extension(path, ending + 1, sizeof ending - 1);
+    const char *found = ending[1] ? strstr(endings, ending) : NULL;
+    const char after = found ? found[strlen(ending)] : '?';
+    return after == ' ' || after == '\0';
+}
+
+// A picture under the name of another kind of file would take the place of what a slip named.
+static bool parse_text(const struct option_spec *o, const char *text, void *value) {
+    *(const char **)value = text;
+    if (!o->endings || has_ending(o->endings, text))
+        return true;
+    log_error("--%s: found '%s', expected a name that ends in %s", o->name, text, o->endings);
+    return false;
+}
+
 static void append(struct option_list *list, const char *text) {
     mem_grow(&list->items, &list->capacity, list->count + 1, sizeof *list->items);
     list->items[list->count++] = text;
@@ -135,7 +153,7 @@ static bool parse_value(const struct option_spec *o, const char *text, void *val
     case OPTION_COUNT: return parse_count(o, text, value);
     case OPTION_NUMBER: return parse_number(o, text, value);
     case OPTION_SECONDS: return parse_seconds(o, text, value);
-    case OPTION_TEXT: *(const char **)value = text; return true;
+    case OPTION_TEXT: return parse_text(o, text, value);
     case OPTION_CHOICE: return parse_choice(o, text, value);
     case OPTION_INTS: return parse_ints(o, o->values, text, value);
     case OPTION_RECTANGLE: return parse_rectangle(o, text, value);

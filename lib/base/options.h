@@ -39,6 +39,7 @@ struct option_spec {
     const char *def;        // default as typed, shown by --help; NULL: value stays zero
     double min, max;        // range of numbers, inclusive; min == max == 0: any
     const char *const *choices; // OPTION_CHOICE: NULL-terminated names
+    const char *endings;    // OPTION_TEXT: those a file's name may have, as ".svg or .png"; NULL: any
     int values;             // OPTION_INTS: how many
     bool required;
 };

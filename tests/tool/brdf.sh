@@ -105,7 +105,7 @@ expect 1 "$relume" brdf "$folder/none.binary"
 contains "$err" "none.binary"
 expect 1 "$relume" brdf diffuse --to "$folder/out.txt"
 contains "$err" ".transfer"
-expect 1 "$relume" brdf diffuse --plot "$folder/out.pdf"
+expect 2 "$relume" brdf diffuse --plot "$folder/out.pdf"
 contains "$err" ".svg"
 expect 2 "$relume" brdf diffuse --angles 100
 contains "$err" "--angles"

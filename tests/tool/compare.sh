@@ -69,6 +69,8 @@ done
 near "$out" channels.0.mean 0.996078431 # signed, 1 / 1.01: twice the reference is red
 near "$out" channels.2.mean 0
 expect 1 "$relume" compare "$one" "$two" --map "$folder/no/map.png"
+expect 2 "$relume" compare "$one" "$two" --map "$folder/map.exr"
+contains "$err" "ends in .png"
 
 # One pixel that is not finite is left out of the metrics, and no limit holds.
 odd=$folder/odd.pfm

@@ -72,6 +72,19 @@ contains "$out" "width: 5"
 
 expect 2 "$relume" tonemap "$half"
 contains "$err" "--output"
+# A PNG takes the place of no render and of no picture of another kind, not even of one that is not there.
+cp "$half" "$folder/kept.exr"
+for name in kept.exr out.jpg out out.png/out; do
+    expect 2 "$relume" tonemap "$folder/none.pfm" -o "$folder/$name"
+    contains "$err" "$name', expected a name that ends in .png"
+done
+cmp -s "$half" "$folder/kept.exr" || fail "tonemap wrote over kept.exr"
+expect 0 "$relume" tonemap "$half" -o "$folder/OUT.PNG"
+for command in "denoise none.exr" "merge none.exr" "edit none.safetensors" "relight none.safetensors"; do
+    # shellcheck disable=SC2086 # words
+    expect 2 "$relume" $command -o "$folder/kept.pfm"
+    contains "$err" "ends in .exr"
+done
 expect 2 "$relume" tonemap "$half" -o "$png" --curve cinematic
 contains "$err" "filmic"
 expect 2 "$relume" tonemap "$half" -o "$png" --exposure bright
