@@ -28,9 +28,8 @@ int edit_distance(const char *a, const char *b) {
     return row[n];
 }
 
-// Keeps the better of two candidates for a mistyped name.
-static void consider(const char *candidate, const char *answer, const char *name, int *best,
-                     const char **nearest) {
+void name_consider(const char *candidate, const char *answer, const char *name, int *best,
+                   const char **nearest) {
     const int d = edit_distance(name, candidate);
     if (d < *best && 3 * d <= (int)strlen(candidate) + 2) {
         *best = d;
@@ -56,9 +55,9 @@ const char *registry_nearest(const struct registry *r, const char *name) {
     int best = 1 << 20;
     const char *nearest = NULL;
     for (const struct entry *const *e = r->entries; *e; e++) {
-        consider((*e)->name, (*e)->name, name, &best, &nearest);
+        name_consider((*e)->name, (*e)->name, name, &best, &nearest);
         for (const char *const *a = (*e)->aliases; a && *a; a++)
-            consider(*a, (*e)->name, name, &best, &nearest);
+            name_consider(*a, (*e)->name, name, &best, &nearest);
     }
     return nearest;
 }
@@ -79,6 +78,6 @@ const char *param_nearest(const struct entry *e, const char *name) {
     int best = 1 << 20;
     const char *nearest = NULL;
     for (const struct param *p = e->params; p && p->name; p++)
-        consider(p->name, p->name, name, &best, &nearest);
+        name_consider(p->name, p->name, name, &best, &nearest);
     return nearest;
 }

@@ -83,3 +83,7 @@ const char *param_nearest(const struct entry *e, const char *name);
 
 // Levenshtein distance; candidate is "near" when the distance is at most a third of its length.
 int edit_distance(const char *a, const char *b);
+// Keeps the better of two candidates for a mistyped name: *nearest becomes the answer, *best the
+// distance, if the candidate is near and nearer. Begin with NULL and any large number.
+void name_consider(const char *candidate, const char *answer, const char *name, int *best,
+                   const char **nearest);

@@ -34,7 +34,7 @@ static spectrum load(const struct mesh_attribute *a, uint32_t i) {
     return spectrum_rgb(p[0], p[1], a->channels > 2 ? p[2] : 0);
 }
 
-// A surface without the attribute is black.
+// Shapes of a world have the attribute (world_check_attributes); any other surface is black.
 static spectrum eval(const void *data, const struct texture_point *at) {
     const struct mesh_attribute_texture *self = data;
     const struct mesh_attribute *a = at->mesh ? mesh_find_attribute(at->mesh, self->name) : NULL;
@@ -53,8 +53,12 @@ static spectrum mean(const void *data) {
     return spectrum_grey(0.5f * self->scale);
 }
 
+static const char *attribute(const void *data) {
+    return ((const struct mesh_attribute_texture *)data)->name;
+}
+
 const struct texture_type texture_mesh_attribute = {
     .entry = {.name = "mesh_attribute", .help = "values given by a mesh per vertex or face",
               .params = params, .size = sizeof(struct mesh_attribute_texture)},
-    .prepare = prepare, .eval = eval, .mean = mean,
+    .prepare = prepare, .eval = eval, .mean = mean, .attribute = attribute,
 };

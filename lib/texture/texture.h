@@ -37,6 +37,8 @@ struct texture_type {
     spectrum (*mean)(const void *data);
     // In texels. NULL: it has none, and counts as 1 x 1.
     void (*size)(const void *data, int *width, int *height);
+    // Of the mesh, which every shape with this texture must have. NULL: none.
+    const char *(*attribute)(const void *data);
     void (*finish)(void *data); // NULL: nothing to do
 };
 

@@ -127,6 +127,37 @@ troubles 0 '' "${pane/dielectric/thindielectric}$sun"
 troubles 1 '9 % of all' "${bulb/dielectric/thindielectric}$point" # what the bulb throws back and forth
 
 # Lists of what lights light, and what the camera does not see.
+# attributed SHAPE NAME BODY: a scene whose one shape wears the attribute NAME
+attributed() {
+    room worn "<shape type='$1'>$3<bsdf type='twosided'><bsdf type='diffuse'>
+<texture name='reflectance' type='product'><texture name='texture_0' type='mesh_attribute'>
+<string name='name' value='$2'/></texture></texture></bsdf></bsdf></shape>"
+}
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' \
+    'property float r' 'property float g' 'property float b' 'element face 1' \
+    'property list uchar int vertex_indices' end_header '0 0 0 1 0 0' '1 0 0 0 1 0' '0 1 0 0 0 1' '3 0 1 2' \
+    >"$folder/painted.ply"
+painted="<string name='filename' value='painted.ply'/>"
+attributed ply vertex_color "$painted"
+expect 0 "$relume" info "$folder/worn.xml"
+attributed ply vertex_colr "$painted"
+expect 1 "$relume" info "$folder/worn.xml"
+contains "$err" 'worn.xml:9: mesh_attribute: the shape "ply" of line 8 has no attribute "vertex_colr"; did you mean "vertex_color"?'
+attributed ply face_heat "$painted"
+expect 1 "$relume" info "$folder/worn.xml"
+contains "$err" '"face_heat"; it has vertex_color'
+for shape in rectangle sphere; do
+    attributed $shape vertex_color ""
+    expect 1 "$relume" info "$folder/worn.xml"
+    contains "$err" "the shape \"$shape\" of line 8 has no attribute \"vertex_color\"; it has none"
+done
+room worn "<shape type='cube'><emitter type='area'><texture name='radiance' type='mesh_attribute'>
+<string name='name' value='face_glow'/></texture></emitter></shape>"
+expect 1 "$relume" info "$folder/worn.xml"
+contains "$err" '"face_glow"; it has none'
+room worn "<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'><string name='name' value='face_glow'/></texture></bsdf>"
+expect 0 "$relume" info "$folder/worn.xml" # nothing wears it
+
 room linked "<emitter type='point'><string name='exclude' value='floor, walls'/></emitter>"
 expect 0 "$relume" info "$folder/linked.xml" --json
 lists "$out" requires light-linking
