@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each kind of file has a function that reads the file in full and tells its content as a JSON
 // object; without --json the same object is printed as lines.
+#include <limits.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/json.h"
+#include "driver/mesh_info.h"
 #include "driver/scene_info.h"
 #include "image/summary.h"
 #include "mesh/mesh.h"
 #include "scene_options.h"
 #include "subcommand.h"
 #include "transport/tensor_remake.h"
+
+enum { MOST_ROWS = 64 }; // of meshes of one file, for people
 
 struct info_options {
     const char *file;
@@ -76,38 +80,6 @@ static bool tell_image(const char *path, struct json *out) {
     return true;
 }
 
-static void tell_bounds(const struct mesh *m, struct json *out) {
-    struct json *corners[2] = {json_add_array(out, "min"), json_add_array(out, "max")};
-    for (int axis = 0; axis < 3; axis++) {
-        float low = m->vertex_count ? m->positions[0][axis] : 0, high = low;
-        for (uint32_t v = 1; v < m->vertex_count; v++) {
-            low = m->positions[v][axis] < low ? m->positions[v][axis] : low;
-            high = m->positions[v][axis] > high ? m->positions[v][axis] : high;
-        }
-        json_append_number(corners[0], (double)low);
-        json_append_number(corners[1], (double)high);
-    }
-}
-
-static bool tell_mesh(const char *path, struct json *out) {
-    const struct mesh_reader_type *reader = mesh_reader_for(path);
-    struct mesh m = {0};
-    const struct mesh_options options = {0};
-    if (!reader || !reader->read(path, &options, &m))
-        return false;
-    json_add_text(out, "kind", "mesh");
-    json_add_count(out, "vertices", m.vertex_count);
-    json_add_count(out, "triangles", m.triangle_count);
-    json_add_bool(out, "normals", m.normals != NULL);
-    json_add_bool(out, "uvs", m.uvs != NULL);
-    struct json *attributes = json_add_array(out, "attributes");
-    for (uint32_t i = 0; i < m.attribute_count; i++)
-        json_append_text(attributes, m.attributes[i].name);
-    tell_bounds(&m, out);
-    mesh_finish(&m);
-    return true;
-}
-
 static bool is_mesh(const char *extension) {
     for (const struct entry *const *e = mesh_readers.entries; *e; e++)
         for (const char *const *x = ((const struct mesh_reader_type *)*e)->extensions; *x; x++)
@@ -135,7 +107,7 @@ static int run(const void *values, const char *command) {
     if (scene_is_format(o->file) && !is_mesh(extension))
         code = tell_scene(o, out);
     else if (is_mesh(extension))
-        code = tell_mesh(o->file, out) ? EXIT_DONE : EXIT_FAILED;
+        code = mesh_info_add(o->file, o->json ? INT_MAX : MOST_ROWS, out) ? EXIT_DONE : EXIT_FAILED;
     else if (strcmp(extension, "safetensors") == 0)
         code = tell_tensor(o->file, out) ? EXIT_DONE : EXIT_FAILED;
     else
@@ -171,7 +143,8 @@ const struct subcommand subcommand_info = {
                 .arguments = arguments,
                 .description = "Of a scene: what it holds, what rendering it requires and does "
                                "not, and the memory it takes.\nOf a picture: size, layers, "
-                               "attributes, the range of each channel, NaN and infinities.",
+                               "attributes, the range of each channel, NaN and infinities.\n"
+                               "Of a file of several meshes: their sums and each.",
                 .examples = "  relume info scene.xml -D spp=64\n"
                             "  relume info room.exr\n  relume info bunny.ply --json\n"},
     .run = run,

@@ -63,6 +63,9 @@ struct mesh_reader_type {
     struct entry entry;             // name: as Mitsuba's shape plugin; params unused
     const char *const *extensions;  // lower case, NULL-terminated
     bool (*read)(const char *path, const struct mesh_options *options, struct mesh *m);
+    // How many meshes the file announces, 1 and more, which shape_index counts; false after an
+    // error message. NULL: the format has one.
+    bool (*count)(const char *path, int *meshes);
 };
 
 #define X(name) extern const struct mesh_reader_type mesh_reader_##name;

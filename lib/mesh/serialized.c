@@ -10,6 +10,7 @@
 // As in Mitsuba v of texture coordinates is not flipped by default, and vertex normals are computed
 // when there are none. Beyond Mitsuba 3: colours become the attribute vertex_color, and the flag
 // for face normals is obeyed.
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 #include <zlib.h>
@@ -263,10 +264,29 @@ static bool read_serialized(const char *path, const struct mesh_options *options
     return false;
 }
 
+// A file without a table at its end has one mesh, which begins where the table would say: at 0.
+static bool count_serialized(const char *path, int *meshes) {
+    size_t size;
+    char *data = file_read(path, 0, &size);
+    const unsigned char *bytes = (const unsigned char *)data;
+    int version;
+    const bool good = data && check_header(path, bytes, size, 0, &version);
+    *meshes = 1;
+    if (good && size >= 8) {
+        const size_t width = version == 4 ? 8 : 4, count = little(bytes + size - 4, 4);
+        if (count > 0 && count <= (size - 8) / width && count <= INT_MAX &&
+            little(bytes + size - 4 - count * width, (int)width) == 0)
+            *meshes = (int)count;
+    }
+    mem_free(data);
+    return good;
+}
+
 static const char *const extensions[] = {"serialized", NULL};
 
 const struct mesh_reader_type mesh_reader_serialized = {
     .entry = {.name = "serialized", .help = "Mitsuba's compressed meshes, several in a file"},
     .extensions = extensions,
     .read = read_serialized,
+    .count = count_serialized,
 };

@@ -127,6 +127,40 @@ troubles 0 '' "${pane/dielectric/thindielectric}$sun"
 troubles 1 '9 % of all' "${bulb/dielectric/thindielectric}$point" # what the bulb throws back and forth
 
 # Lists of what lights light, and what the camera does not see.
+# A mesh of triangles is one; a serialized file may hold several, of which all are read.
+python3 - "$folder" <<'END'
+import struct, sys, zlib
+def mesh(z, triangles, flags):
+    corners = 3 * triangles
+    data = struct.pack("<I", 0x1000 | flags) + b"part\0" + struct.pack("<QQ", corners, triangles)
+    data += b"".join(struct.pack("<3f", i % 3 == 1, i % 3 == 2, z) for i in range(corners))
+    data += struct.pack("<2f", 0, 0) * corners if flags & 2 else b""
+    return struct.pack("<HH", 0x041c, 4) + zlib.compress(data + struct.pack(f"<{corners}I", *range(corners)))
+parts = [mesh(0, 1, 2), mesh(7, 2, 0), mesh(-1, 4, 2)]
+starts = [sum(map(len, parts[:i])) for i in range(3)]
+table = struct.pack("<3QI", *starts, 3)
+open(sys.argv[1] + "/three.serialized", "wb").write(b"".join(parts) + table)
+open(sys.argv[1] + "/bare.serialized", "wb").write(parts[1])
+open(sys.argv[1] + "/cut.serialized", "wb").write(b"".join(parts[:2]) + parts[2][:40] + table)
+END
+expect 0 "$relume" info "$folder/three.serialized" --json
+near "$out" meshes 3
+near "$out" triangles 7
+near "$out" vertices 21
+near "$out" uvs 0
+near "$out" min.2 -1
+near "$out" max.2 7
+near "$out" each.1.triangles 2
+near "$out" each.2.uvs 1
+expect 0 "$relume" info "$folder/three.serialized"
+contains "$out" "triangles: 7"
+contains "$out" "triangles 4"
+expect 0 "$relume" info "$folder/bare.serialized" --json
+near "$out" meshes 1
+near "$out" triangles 2
+expect 1 "$relume" info "$folder/cut.serialized"
+contains "$err" "cut.serialized"
+
 # attributed SHAPE NAME BODY: a scene whose one shape wears the attribute NAME
 attributed() {
     room worn "<shape type='$1'>$3<bsdf type='twosided'><bsdf type='diffuse'>
