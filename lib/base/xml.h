@@ -27,6 +27,7 @@ struct xml_node {
     struct xml_node *first, *last, *next; // children, sibling
     struct where at;
     bool old; // from a file of a version before 2
+    const char *old_name; // the attribute `name` as such a file has it; NULL: as it is
     const char *text; // XML_TEXT_KEPT: all text directly inside, pieces joined; else NULL
 };
 

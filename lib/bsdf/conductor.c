@@ -31,8 +31,10 @@ bool conductor_index_prepare(struct conductor_index *index, const struct object 
             return false;
         }
         if (!ior_conductor_find(index->material, &index->eta, &index->k)) {
-            log_error_at(self->at, "%s: material \"%s\" is not known; expected a metal such as Au, "
-                         "Ag, Al, Cu, or none", self->type->name, index->material);
+            const char *nearest = ior_conductor_nearest(index->material);
+            log_error_at(self->at, "%s: material \"%s\" is not known; %s%s%s", self->type->name,
+                         index->material, nearest ? "did you mean \"" : "expected a metal such as ",
+                         nearest ? nearest : "Au, Ag, Al, Cu, or none", nearest ? "\"?" : "");
             return false;
         }
         if (index->material[0] == 'n' && index->material[1] == 'o') // none: a perfect mirror

@@ -2,7 +2,9 @@
 #include "math/ior.h"
 
 #include <string.h>
+#include <strings.h>
 
+#include "base/registry.h"
 #include "math/ior_table.h"
 
 enum {
@@ -28,6 +30,17 @@ bool ior_conductor_find(const char *name, spectrum *eta, spectrum *k) {
 
 const char *ior_conductor_name(size_t i) {
     return i < CONDUCTORS ? conductors[i].name : NULL;
+}
+
+const char *ior_conductor_nearest(const char *name) {
+    const char *nearest = NULL;
+    int best = 1 << 20;
+    for (int i = 0; i < CONDUCTORS; i++) {
+        if (strcasecmp(conductors[i].name, name) == 0)
+            return conductors[i].name;
+        name_consider(conductors[i].name, conductors[i].name, name, &best, &nearest);
+    }
+    return nearest;
 }
 
 bool ior_dielectric_find(const char *name, float *ior) {

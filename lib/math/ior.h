@@ -16,6 +16,8 @@
 bool ior_conductor_find(const char *name, spectrum *eta, spectrum *k);
 // Names of the conductors, sorted; NULL when i is past the last.
 const char *ior_conductor_name(size_t i);
+// Of a mistyped name, upper and lower case disregarded; NULL where nothing is near.
+const char *ior_conductor_nearest(const char *name);
 
 // Real index of a dielectric ("vacuum", "air", "water", "bk7", "diamond", ...). false: unknown.
 bool ior_dielectric_find(const char *name, float *ior);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The elements of Mitsuba's scene language, and what versions before 2 called them.
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "scene/reader.h"
@@ -126,8 +127,20 @@ static void upgrade(struct reader *r, struct xml_node *node) {
     if (strcmp(node->tag, "volume") == 0 && type && strcmp(type, "gridvolume") == 0)
         append_text(r, node, "boolean", "use_grid_bbox", "true"); // version 3 ignores the file's
     const char *name = xml_get(node, "name");
-    if (name && strcmp(node->tag, "default") != 0)
+    if (name && strcmp(node->tag, "default") != 0) {
+        node->old_name = name;
         xml_set(node, "name", snake_case(name, r->arena), r->arena);
+    }
+}
+
+const char *dialect_spelling(const struct xml_node *node, const char *name, struct arena *arena) {
+    if (!node->old)
+        return name;
+    char *out = arena_alloc(arena, strlen(name) + 1), *end = out;
+    for (const char *c = name; *c; c++)
+        *end++ = c[0] == '_' && islower((unsigned char)c[1]) ? (char)toupper((unsigned char)*++c) : *c;
+    *end = '\0';
+    return out;
 }
 
 // Whether `name` is in a list of blank-separated words, a '!' before it disregarded.
@@ -193,6 +206,23 @@ bool dialect_upgrade_uv(struct reader *r, struct xml_node *node) {
     return true;
 }
 
+static void complain_attribute(const struct xml_node *node, const char *list, const char *name) {
+    char known[64], hint[96];
+    const char *nearest = NULL;
+    size_t n = 0;
+    int best = 1 << 20;
+    for (const char *c = list; *c; c++)
+        if (*c != '!' && n + 1 < sizeof known)
+            known[n++] = *c;
+    known[n - 1] = '\0'; // the blank behind the last
+    snprintf(hint, sizeof hint, "it may have: %s", known);
+    for (char *rest, *word = strtok_r(known, " ", &rest); word; word = strtok_r(NULL, " ", &rest))
+        name_consider(word, word, name, &best, &nearest);
+    if (nearest)
+        snprintf(hint, sizeof hint, "did you mean \"%s\"?", nearest);
+    log_error_at(node->at, "<%s> has no attribute \"%s\"; %s", node->tag, name, hint);
+}
+
 bool dialect_check(struct reader *r, struct xml_node *node) {
     if (node->old)
         upgrade(r, node);
@@ -208,8 +238,7 @@ bool dialect_check(struct reader *r, struct xml_node *node) {
     for (int i = 0; i < node->attribute_count; i++)
         if (!listed("version ", node->attributes[i].name) && // outermost elements have it
             !listed(t->attributes, node->attributes[i].name)) {
-            log_error_at(node->at, "<%s> has no attribute \"%s\"; it may have: %s", node->tag,
-                         node->attributes[i].name, t->attributes);
+            complain_attribute(node, t->attributes, node->attributes[i].name);
             return false;
         }
     return check_required(node, t->attributes);

@@ -76,13 +76,17 @@ static bool unknown_parameter(const struct fill *f, const struct xml_node *child
     const char *nearest = param_nearest(f->e, name);
     char hint[256] = "";
     if (nearest)
-        snprintf(hint, sizeof hint, "; did you mean \"%s\"?", nearest);
+        snprintf(hint, sizeof hint, "; did you mean \"%s\"?",
+                 dialect_spelling(child, nearest, f->r->arena));
     else {
         size_t used = (size_t)snprintf(hint, sizeof hint, "; it has:");
         for (const struct param *p = f->e->params; p && p->name; p++)
             if (p->type != PARAM_IGNORED && used + strlen(p->name) + 2 < sizeof hint)
-                used += (size_t)snprintf(hint + used, sizeof hint - used, " %s", p->name);
+                used += (size_t)snprintf(hint + used, sizeof hint - used, " %s",
+                                         dialect_spelling(child, p->name, f->r->arena));
     }
+    if (child->old_name)
+        name = child->old_name;
     if (f->r->options->lenient) {
         log_warn_at(child->at, "%s \"%s\" has no parameter \"%s\"%s", f->node->tag,
                     xml_get(f->node, "type"), name, hint);

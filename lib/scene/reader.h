@@ -97,6 +97,8 @@ enum tag_kind tag_kind(const struct xml_node *node);
 const char *tag_nearest(const char *tag);
 // Renames an element of a file before version 2, and checks its attributes.
 bool dialect_check(struct reader *r, struct xml_node *node);
+// A parameter's name as the file of that element would spell it.
+const char *dialect_spelling(const struct xml_node *node, const char *name, struct arena *arena);
 // Of an object of an old file, once its children have been checked.
 bool dialect_upgrade_uv(struct reader *r, struct xml_node *node);
 

@@ -192,6 +192,23 @@ contains "$err" '"face_glow"; it has none'
 room worn "<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'><string name='name' value='face_glow'/></texture></bsdf>"
 expect 0 "$relume" info "$folder/worn.xml" # nothing wears it
 
+# Messages speak as the file does.
+printf '<scene version="0.5.0">\n<integrator type="path"><integer name="maxDepht" value="3"/></integrator></scene>\n' >"$folder/old.xml"
+expect 1 "$relume" info "$folder/old.xml"
+contains "$err" 'has no parameter "maxDepht"; did you mean "maxDepth"?'
+room typo "<shape tipe='sphere'/>"
+expect 1 "$relume" info "$folder/typo.xml"
+contains "$err" 'has no attribute "tipe"; did you mean "type"?'
+room typo "<shape kind='sphere'/>"
+expect 1 "$relume" info "$folder/typo.xml"
+contains "$err" 'has no attribute "kind"; it may have: type id name'
+[[ $err != *!* ]] || fail "marks of the table in: $err"
+for metal in au AU a-c; do
+    expect 1 "$relume" brdf roughconductor -D material=$metal
+    contains "$err" "\"$metal\" is not known; did you mean \""
+done
+contains "$err" '"a-C"'
+
 room linked "<emitter type='point'><string name='exclude' value='floor, walls'/></emitter>"
 expect 0 "$relume" info "$folder/linked.xml" --json
 lists "$out" requires light-linking
