@@ -55,7 +55,7 @@ static bool write_picture(const struct values *v, const struct film_union *u) {
     const struct image_exr_options exr = {.half = v->half};
     bool written = film_image(u->film, &im);
     if (written) {
-        film_head_label(u->head, u->film, &im);
+        film_head_label(u->head, u->film, film_noise(u->film), &im);
         image_from_rec709(&im, (enum image_space)v->space);
         written = merge_mattes(v->inputs.items, v->inputs.count, &im) &&
                   image_write_exr(v->output, &im, &exr);

@@ -108,7 +108,7 @@ void checkpoint_tick(struct checkpoint *c, const struct film *film) {
         c->next_journal = next_time(&c->journal_interval, time_seconds() - now);
     }
     if (c->options.preview_seconds > 0 && now >= c->next_preview) {
-        const struct render_result so_far = {.seconds = now - c->start};
+        const struct render_result so_far = {.seconds = now - c->start, .noise = film_noise(film)};
         const double before = time_seconds();
         checkpoint_picture(c, film, &so_far);
         c->next_preview = next_time(&c->preview_interval, time_seconds() - before);
@@ -131,7 +131,7 @@ bool checkpoint_picture(const struct checkpoint *c, const struct film *film,
     struct image im = {0};
     bool written = job_image(c->job, film, result, &im);
     if (written) {
-        film_head_label(c->head, film, &im);
+        film_head_label(c->head, film, result->noise, &im);
         image_from_rec709(&im, c->options.space);
         written = image_write_exr(c->options.output, &im, c->options.exr);
     }

@@ -215,8 +215,8 @@ static void place_crop(const struct json *head, struct image *im) {
     im->crop_y = y;
 }
 
-void film_head_label(const struct json *head, const struct film *film, struct image *im) {
-    const double noise = film_noise(film);
+void film_head_label(const struct json *head, const struct film *film, double noise,
+                     struct image *im) {
     double clamp = 0;
     place_crop(head, im);
     image_set_text(im, "relume.command", json_text(json_get(head, "command")));

@@ -21,6 +21,7 @@ bool film_head_agrees(const struct json *a, const char *path_a, const struct jso
 // belong to head and arena. false after an error message: the head of `path` is damaged.
 bool film_head_options(const struct json *head, const char *path, struct film_options *options,
                        struct arena *arena);
-// Writes what the head says, and the film's samples and noise, as attributes of a picture; a crop
-// gets its place in the whole.
-void film_head_label(const struct json *head, const struct film *film, struct image *im);
+// Writes what the head says, and the film's samples and noise (film_noise), as attributes of a picture;
+// a crop gets its place in the whole.
+void film_head_label(const struct json *head, const struct film *film, double noise,
+                     struct image *im);

@@ -193,10 +193,17 @@ void film_add_part(const struct film *whole, double *values, const struct film *
         }
 }
 
-void film_pixel(const struct film *f, int x, int y, double *sums) {
-    const size_t first = pixel_values(f, x, y);
-    for (uint32_t c = 0; c < f->layout.channels; c++)
+static void total(const struct film *f, size_t first, uint32_t count, double *sums) {
+    for (uint32_t c = 0; c < count; c++)
         sums[c] = sums_total(&f->sums, first + c, f->open[f->committed][first + c]);
+}
+
+void film_pixel(const struct film *f, int x, int y, double *sums) {
+    total(f, pixel_values(f, x, y), f->layout.channels, sums);
+}
+
+void film_pixel_replicates(const struct film *f, int x, int y, double *sums) {
+    total(f, pixel_values(f, x, y) + f->layout.replicate_channel, 3 * FILM_REPLICATES, sums);
 }
 
 // Adds what a pixel takes in steps [first, first + steps).

@@ -29,6 +29,8 @@ void film_layout_add_aovs(const struct film_layout *l, double *pixel, const stru
 
 // Sums of all channels of pixel (x, y) on the absolute grid, over all samples so far.
 void film_pixel(const struct film *f, int x, int y, double *sums);
+// The same of its replicates alone: 3 * FILM_REPLICATES sums.
+void film_pixel_replicates(const struct film *f, int x, int y, double *sums);
 // Samples of a pixel, and of its replicates.
 struct film_counts {
     uint64_t all, replicate[FILM_REPLICATES];

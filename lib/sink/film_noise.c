@@ -25,22 +25,20 @@ static double grey(const double *replicates, uint32_t r) {
 
 // Of all pixels of the crop; mem_free values.
 static struct greys find_greys(const struct film *f) {
-    const struct film_layout *l = film_get_layout(f);
     const struct film_options *o = film_get_options(f);
     struct greys g = {.width = o->x1 - o->x0, .height = o->y1 - o->y0};
     const size_t pixels = (size_t)g.width * (size_t)g.height;
-    double *sums = mem_array(l->channels, sizeof *sums), *value;
-    value = g.values = mem_array(pixels, sizeof *g.values);
+    double sums[3 * FILM_REPLICATES], *value = mem_array(pixels, sizeof *value);
+    g.values = value;
     for (int y = o->y0; y < o->y1; y++)
         for (int x = o->x0; x < o->x1; x++, value++) {
             struct film_counts n;
-            film_pixel(f, x, y, sums);
+            film_pixel_replicates(f, x, y, sums);
             film_pixel_counts(f, x, y, &n);
             for (uint32_t r = 0; r < FILM_REPLICATES; r++)
-                *value += grey(sums + l->replicate_channel, r) / (double)n.all;
+                *value += grey(sums, r) / (double)n.all;
             g.mean += *value / (double)pixels;
         }
-    mem_free(sums);
     return g;
 }
 
@@ -82,16 +80,15 @@ double film_noise(const struct film *f) {
     if (l->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
         return -1;
     const struct greys g = find_greys(f);
-    double *sums = mem_array(l->channels, sizeof *sums), noise = 0;
+    double sums[3 * FILM_REPLICATES], noise = 0;
     for (int y = 0; y < g.height; y++)
         for (int x = 0; x < g.width; x++) {
             struct film_counts n;
-            film_pixel(f, o->x0 + x, o->y0 + y, sums);
+            film_pixel_replicates(f, o->x0 + x, o->y0 + y, sums);
             film_pixel_counts(f, o->x0 + x, o->y0 + y, &n);
-            noise += relative_error(&n, sums + l->replicate_channel, brightest_around(&g, x, y),
+            noise += relative_error(&n, sums, brightest_around(&g, x, y),
                                     1e-3 * g.mean * g.mean);
         }
-    mem_free(sums);
     mem_free(g.values);
     return sqrt(noise / ((double)g.width * (double)g.height));
 }
