@@ -33,11 +33,15 @@ static _Noreturn void out_of_memory(size_t count, size_t size, const char *file,
     abort();
 }
 
-void *mem_array_at(size_t count, size_t size, const char *file, int line) {
+// Never zero.
+static size_t padded(size_t bytes) {
+    return (bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1);
+}
+
+void *mem_array_unset_at(size_t count, size_t size, const char *file, int line) {
     if (size && count > (SIZE_MAX - ALIGNMENT) / size)
         out_of_memory(count, size, file, line);
-    size_t bytes = count * size;
-    bytes = (bytes + ALIGNMENT) & ~(size_t)(ALIGNMENT - 1); // never zero
+    const size_t bytes = padded(count * size);
     const bool large = bytes >= LEAST_HUGE && bytes <= SIZE_MAX - HUGE_PAGE;
     const size_t unit = large ? HUGE_PAGE : ALIGNMENT;
     void *p = aligned_alloc(unit, (bytes + unit - 1) & ~(unit - 1));
@@ -47,7 +51,11 @@ void *mem_array_at(size_t count, size_t size, const char *file, int line) {
     if (large)
         madvise(p, bytes, MADV_HUGEPAGE); // a wish: what refuses it works without
 #endif
-    return memset(p, 0, bytes);
+    return p;
+}
+
+void *mem_array_at(size_t count, size_t size, const char *file, int line) {
+    return memset(mem_array_unset_at(count, size, file, line), 0, padded(count * size));
 }
 
 void mem_free(void *p) {

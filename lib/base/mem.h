@@ -12,6 +12,10 @@
 // least, and what is left of 64, may be read: four bytes behind numbers of four.
 #define mem_array(count, size) mem_array_at((count), (size), __FILE__, __LINE__)
 void *mem_array_at(size_t count, size_t size, const char *file, int line);
+// The same, not zeroed: for what is written before it is read. Its pages come as they are written, to
+// the threads that do.
+#define mem_array_unset(count, size) mem_array_unset_at((count), (size), __FILE__, __LINE__)
+void *mem_array_unset_at(size_t count, size_t size, const char *file, int line);
 void mem_free(void *p); // NULL is fine
 
 // Grows *data so that it holds at least `need` objects of `size` bytes (doubling); *capacity is

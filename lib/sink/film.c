@@ -15,7 +15,7 @@ struct film {
     struct film_layout layout;
     struct tile_grid grid;
     size_t tile_values; // doubles a tile takes
-    double *open[2];    // sums of the unfinished block: committed, running
+    double *open[2];    // sums of the unfinished block: committed (unset without samples), running
     int committed;
     struct sums sums;            // of finished blocks
     uint64_t block;              // the unfinished one
@@ -51,8 +51,8 @@ struct film *film_create(const struct film_options *options) {
     film_layout_init(&f->layout, options);
     f->grid = tile_grid_over((struct sink_area){options->x0, options->y0, options->x1, options->y1});
     f->tile_values = (size_t)SINK_TILE * SINK_TILE * f->layout.channels;
-    for (int i = 0; i < 2; i++)
-        f->open[i] = mem_array(film_values(f), sizeof *f->open[i]);
+    f->open[0] = mem_array_unset(film_values(f), sizeof *f->open[0]);
+    f->open[1] = mem_array(film_values(f), sizeof *f->open[1]);
     sums_init(&f->sums, film_values(f));
     assert(options->first % FILM_BLOCK == 0);
     f->block = options->first / FILM_BLOCK;
@@ -104,24 +104,25 @@ uint64_t film_rejected(const struct film *f) {
 
 // Moves the finished block to the sums and begins the next.
 static void finish_block(struct film *f) {
-    const size_t n = film_values(f);
-    double *values = mem_array(n, sizeof *values);
-    memcpy(values, f->open[f->committed], n * sizeof *values);
-    sums_add(&f->sums, (struct sums_node){f->options.seed, 0, f->block, 0, values});
-    memset(f->open[f->committed], 0, n * sizeof *f->open[0]);
+    double **open = &f->open[f->committed];
+    sums_add(&f->sums, (struct sums_node){f->options.seed, 0, f->block, 0, *open});
+    *open = mem_array_unset(film_values(f), sizeof **open);
     f->open_samples = 0;
     f->block++;
+}
+
+static void open_block(struct film *f, double *values, uint32_t samples) {
+    mem_free(f->open[f->committed]);
+    f->open[f->committed] = values;
+    f->open_samples = samples;
 }
 
 // Takes a short block back from the sums, to go on with it.
 static void reopen_block(struct film *f) {
     struct sums_node node;
     f->block = sums_next(&f->sums, f->options.seed, f->options.first) / FILM_BLOCK;
-    if (!sums_take_short(&f->sums, f->options.seed, &node))
-        return;
-    memcpy(f->open[f->committed], node.values, film_values(f) * sizeof *node.values);
-    f->open_samples = FILM_BLOCK - node.missing;
-    mem_free(node.values);
+    if (sums_take_short(&f->sums, f->options.seed, &node))
+        open_block(f, node.values, FILM_BLOCK - node.missing);
 }
 
 void film_commit(struct film *f, uint32_t samples) {
@@ -142,13 +143,10 @@ const double *film_running(const struct film *f, uint32_t tile) {
 
 void film_add_block(struct film *f, double *values, uint32_t samples) {
     assert(f->open_samples == 0);
-    if (samples == FILM_BLOCK) {
+    if (samples == FILM_BLOCK)
         sums_add(&f->sums, (struct sums_node){f->options.seed, 0, f->block++, 0, values});
-        return;
-    }
-    memcpy(f->open[f->committed], values, film_values(f) * sizeof *values);
-    f->open_samples = samples;
-    mem_free(values);
+    else
+        open_block(f, values, samples);
 }
 
 void film_add_rejected(struct film *f, uint64_t samples) {
@@ -194,8 +192,7 @@ void film_add_part(const struct film *whole, double *values, const struct film *
 }
 
 static void total(const struct film *f, size_t first, uint32_t count, double *sums) {
-    for (uint32_t c = 0; c < count; c++)
-        sums[c] = sums_total(&f->sums, first + c, f->open[f->committed][first + c]);
+    sums_total(&f->sums, first, count, f->open_samples ? f->open[f->committed] + first : NULL, sums);
 }
 
 void film_pixel(const struct film *f, int x, int y, double *sums) {
@@ -326,8 +323,10 @@ static void view_open(struct sink *s, uint32_t tile, struct sink_area *wanted) {
     const struct film *f = v->film;
     v->tile = tile;
     v->wanted = *wanted = tile_grid_area(&f->grid, tile);
-    memcpy(v->sums, f->open[f->committed] + tile * f->tile_values,
-           f->tile_values * sizeof *v->sums);
+    memset(v->sums, 0, f->tile_values * sizeof *v->sums);
+    if (f->open_samples)
+        memcpy(v->sums, f->open[f->committed] + tile * f->tile_values,
+               f->tile_values * sizeof *v->sums);
 }
 
 static void view_place(struct sink *s, int lane, int x, int y, uint32_t sample) {

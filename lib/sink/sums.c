@@ -120,9 +120,13 @@ uint64_t sums_next(const struct sums *s, uint32_t seed, uint64_t first) {
     return next;
 }
 
-double sums_total(const struct sums *s, size_t i, double last) {
-    double sum = last;
-    for (size_t n = s->count; n-- > 0;)
-        sum = s->nodes[n].values[i] + sum;
-    return sum;
+void sums_total(const struct sums *s, size_t first, size_t count, const double *last, double *sums) {
+    memset(sums, 0, count * sizeof *sums);
+    if (last)
+        memcpy(sums, last, count * sizeof *sums);
+    for (size_t n = s->count; n-- > 0;) {
+        const double *values = s->nodes[n].values + first;
+        for (size_t i = 0; i < count; i++)
+            sums[i] = values[i] + sums[i];
+    }
 }

@@ -47,5 +47,6 @@ uint64_t sums_samples(const struct sums *s);
 uint64_t sums_samples_of_phase(const struct sums *s, uint32_t period, uint32_t phase);
 // The sample after the last one that is known without a gap from `first` on.
 uint64_t sums_next(const struct sums *s, uint32_t seed, uint64_t first);
-// Sum over all nodes of value i, beginning with `last`, which stands behind all nodes.
-double sums_total(const struct sums *s, size_t i, double last);
+// Sums over all nodes of `count` values from `first` on, beginning with `last`, which stand behind all
+// nodes; NULL: none do.
+void sums_total(const struct sums *s, size_t first, size_t count, const double *last, double *sums);
