@@ -11,11 +11,14 @@
 #include <math.h>
 
 #include "base/mem.h"
+#include "base/thread.h"
 #include "sink/film_layout.h"
 
 struct greys {
+    const struct film *film;
     int width, height;
     double *values, mean;
+    double *errors; // squared, relative
 };
 
 // Sum of grey values of a replicate.
@@ -23,23 +26,19 @@ static double grey(const double *replicates, uint32_t r) {
     return (replicates[3 * r] + replicates[3 * r + 1] + replicates[3 * r + 2]) / 3;
 }
 
-// Of all pixels of the crop; mem_free values.
-static struct greys find_greys(const struct film *f) {
-    const struct film_options *o = film_get_options(f);
-    struct greys g = {.width = o->x1 - o->x0, .height = o->y1 - o->y0};
-    const size_t pixels = (size_t)g.width * (size_t)g.height;
-    double sums[3 * FILM_REPLICATES], *value = mem_array(pixels, sizeof *value);
-    g.values = value;
-    for (int y = o->y0; y < o->y1; y++)
-        for (int x = o->x0; x < o->x1; x++, value++) {
-            struct film_counts n;
-            film_pixel_replicates(f, x, y, sums);
-            film_pixel_counts(f, x, y, &n);
-            for (uint32_t r = 0; r < FILM_REPLICATES; r++)
-                *value += grey(sums, r) / (double)n.all;
-            g.mean += *value / (double)pixels;
-        }
-    return g;
+static void find_greys(void *greys, size_t row, int worker) {
+    const struct greys *g = greys;
+    const struct film_options *o = film_get_options(g->film);
+    double sums[3 * FILM_REPLICATES];
+    (void)worker;
+    for (int x = 0; x < g->width; x++) {
+        double *value = g->values + row * (size_t)g->width + (size_t)x;
+        struct film_counts n;
+        film_pixel_replicates(g->film, o->x0 + x, o->y0 + (int)row, sums);
+        film_pixel_counts(g->film, o->x0 + x, o->y0 + (int)row, &n);
+        for (uint32_t r = 0; r < FILM_REPLICATES; r++)
+            *value += grey(sums, r) / (double)n.all;
+    }
 }
 
 // The brightest of the up to eight pixels around one.
@@ -74,21 +73,36 @@ static double relative_error(const struct film_counts *n, const double *replicat
     return error;
 }
 
+static void find_errors(void *greys, size_t row, int worker) {
+    const struct greys *g = greys;
+    const struct film_options *o = film_get_options(g->film);
+    double sums[3 * FILM_REPLICATES], *errors = g->errors + row * (size_t)g->width;
+    (void)worker;
+    for (int x = 0; x < g->width; x++) {
+        struct film_counts n;
+        film_pixel_replicates(g->film, o->x0 + x, o->y0 + (int)row, sums);
+        film_pixel_counts(g->film, o->x0 + x, o->y0 + (int)row, &n);
+        errors[x] = relative_error(&n, sums, brightest_around(g, x, (int)row),
+                                   1e-3 * g->mean * g->mean);
+    }
+}
+
+// Rows are looked at by several threads, and summed by one in their order.
 double film_noise(const struct film *f) {
-    const struct film_layout *l = film_get_layout(f);
     const struct film_options *o = film_get_options(f);
-    if (l->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
+    if (film_get_layout(f)->replicate_channel == LAYOUT_NONE || film_samples(f) < 2)
         return -1;
-    const struct greys g = find_greys(f);
-    double sums[3 * FILM_REPLICATES], noise = 0;
-    for (int y = 0; y < g.height; y++)
-        for (int x = 0; x < g.width; x++) {
-            struct film_counts n;
-            film_pixel_replicates(f, o->x0 + x, o->y0 + y, sums);
-            film_pixel_counts(f, o->x0 + x, o->y0 + y, &n);
-            noise += relative_error(&n, sums, brightest_around(&g, x, y),
-                                    1e-3 * g.mean * g.mean);
-        }
+    struct greys g = {.film = f, .width = o->x1 - o->x0, .height = o->y1 - o->y0};
+    const size_t pixels = (size_t)g.width * (size_t)g.height;
+    double noise = 0;
+    g.values = mem_array(2 * pixels, sizeof *g.values);
+    g.errors = g.values + pixels;
+    thread_for(0, (size_t)g.height, find_greys, &g);
+    for (size_t i = 0; i < pixels; i++)
+        g.mean += g.values[i] / (double)pixels;
+    thread_for(0, (size_t)g.height, find_errors, &g);
+    for (size_t i = 0; i < pixels; i++)
+        noise += g.errors[i];
     mem_free(g.values);
-    return sqrt(noise / ((double)g.width * (double)g.height));
+    return sqrt(noise / (double)pixels);
 }
