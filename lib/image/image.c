@@ -10,7 +10,7 @@
 #include "image/decode.h"
 #include "image/oiio.h"
 
-bool image_init(struct image *im, int width, int height, int channels) {
+bool image_init_head(struct image *im, int width, int height, int channels) {
     static const char *const names[5][4] = {{0}, {"Y"}, {"Y", "A"}, {"R", "G", "B"},
                                             {"R", "G", "B", "A"}};
     *im = (struct image){0};
@@ -24,7 +24,6 @@ bool image_init(struct image *im, int width, int height, int channels) {
     im->height = height;
     im->channels = channels;
     im->bits = 32;
-    im->pixels = mem_array((size_t)width * (size_t)height, (size_t)channels * sizeof(float));
     im->channel_names = mem_array((size_t)channels, sizeof *im->channel_names);
     for (int c = 0; c < channels; c++)
         if (channels <= 4)
@@ -32,6 +31,18 @@ bool image_init(struct image *im, int width, int height, int channels) {
         else
             snprintf(im->channel_names[c], IMAGE_NAME_SIZE, "channel%d", c);
     return true;
+}
+
+void image_add_pixels(struct image *im) {
+    im->pixels = mem_array((size_t)im->width * (size_t)im->height,
+                           (size_t)im->channels * sizeof *im->pixels);
+}
+
+bool image_init(struct image *im, int width, int height, int channels) {
+    const bool made = image_init_head(im, width, height, channels);
+    if (made)
+        image_add_pixels(im);
+    return made;
 }
 
 void image_finish(struct image *im) {

@@ -21,7 +21,7 @@ struct image_attribute {
 
 struct image {
     int width, height, channels;
-    float *pixels;               // owned
+    float *pixels;               // owned; NULL: see struct image_rows
     char (*channel_names)[IMAGE_NAME_SIZE]; // owned
     struct image_attribute *attributes; // owned
     int attribute_count;
@@ -35,6 +35,9 @@ struct image {
 // All zero pixels; channel names Y, YA, RGB, RGBA or channel0, channel1, ... false after an error
 // message: a size below 1 or beyond 2^40 values.
 bool image_init(struct image *im, int width, int height, int channels);
+// The same in two steps. The first gives names without pixels.
+bool image_init_head(struct image *im, int width, int height, int channels);
+void image_add_pixels(struct image *im);
 void image_finish(struct image *im);
 void image_set_text(struct image *im, const char *name, const char *text);
 void image_set_number(struct image *im, const char *name, double number);
@@ -59,12 +62,20 @@ struct image_bytes {
 // PNG, JPEG and the like, as image_read does; `name` is for messages.
 bool image_read_bytes(const char *name, const struct image_bytes *bytes, struct image *im);
 
+// Where pixels come from that never lie in memory as a whole.
+struct image_rows {
+    // Makes `rows` rows from row y on; called by several threads at once.
+    void (*make)(const void *self, int y, int rows, float *pixels);
+    const void *self;
+};
+
 struct image_exr_options {
     bool half;                // 16-bit channels but for numbers that name objects; values beyond
                               // its range become infinite
     uint64_t *half_overflows; // is set to their number; may be NULL
     uint64_t *overflows;      // to the number of values that no float held; may be NULL
     int threads;              // 0: default
+    struct image_rows rows;   // of an image without pixels
 };
 
 // Atomic (base/file.h). ZIP compression. Channel names must differ. options may be NULL.

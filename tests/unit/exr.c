@@ -3,6 +3,7 @@
 #include "check.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -52,6 +53,56 @@ static void float_round_trip_is_bit_exact(int width, int height, int channels, i
     CHECK(differing_bits(&im, &back) == 0);
     image_finish(&im);
     image_finish(&back);
+}
+
+// Where an image without pixels has them from, and how often each row was asked for.
+struct rows_of {
+    const struct image *im;
+    atomic_int *asked;
+};
+
+static void make_rows(const void *self, int y, int rows, float *pixels) {
+    const struct rows_of *r = self;
+    const size_t line = (size_t)r->im->width * (size_t)r->im->channels;
+    for (int i = 0; i < rows; i++)
+        r->asked[y + i]++;
+    memcpy(pixels, r->im->pixels + (size_t)y * line, (size_t)rows * line * sizeof *pixels);
+}
+
+// Pixels that are made while they are written give the file that they give in one piece, values that
+// no float or half holds counted in it: on few and many threads, with more and less than a batch of
+// chunks, the last of them short or not.
+static void rows_give_the_same_file(int width, int height, int channels, int threads) {
+    struct image im, head;
+    size_t size[2];
+    char *file[2];
+    uint64_t counts[2][2];
+    CHECK(image_init(&im, width, height, channels));
+    CHECK(image_init_head(&head, width, height, channels) && !head.pixels);
+    fill_random(&im);
+    im.full_width = head.full_width = width + 7;
+    im.full_height = head.full_height = height + 5;
+    im.crop_x = head.crop_x = 7;
+    im.crop_y = head.crop_y = 3;
+    const struct rows_of rows = {&im, mem_array((size_t)height, sizeof *rows.asked)};
+    for (int i = 0; i < 2; i++) {
+        CHECK(image_write_exr(path, i ? &head : &im,
+                              &(struct image_exr_options){.threads = threads, .half = channels == 2,
+                                                          .overflows = &counts[i][0],
+                                                          .half_overflows = &counts[i][1],
+                                                          .rows = {make_rows, &rows}}));
+        file[i] = file_read(path, 0, &size[i]);
+    }
+    for (int y = 0; y < height; y++)
+        CHECK(rows.asked[y] == 1);
+    CHECK(size[0] == size[1] && memcmp(file[0], file[1], size[0]) == 0);
+    CHECK(counts[0][0] > 0 && (counts[0][1] > 0) == (channels == 2));
+    CHECK(memcmp(counts[0], counts[1], sizeof counts[0]) == 0);
+    mem_free(file[0]);
+    mem_free(file[1]);
+    mem_free(rows.asked);
+    image_finish(&head);
+    image_finish(&im);
 }
 
 static void many_layers_keep_their_names(void) {
@@ -195,12 +246,14 @@ static void truncated_files_are_refused(void) {
 }
 
 // No more than a few bytes may be written, as on a disk that is full: it fails at every place of the
-// file, ends (OpenEXRCore holds a lock while it tells of some errors), and leaves what was there.
+// file, whole or by rows, ends (OpenEXRCore holds a lock while it tells of some errors), and leaves what was there.
 static void failed_writes_end(void) {
-    struct image im, back;
+    struct image im, head, back;
     struct rlimit before, limit;
     size_t size = 0;
-    CHECK(image_init(&im, 150, 100, 3));
+    CHECK(image_init(&im, 150, 100, 3) && image_init_head(&head, 150, 100, 3));
+    const struct rows_of rows = {&im, mem_array(100, sizeof *rows.asked)};
+    const struct image_exr_options options = {.rows = {make_rows, &rows}};
     fill_random(&im);
     CHECK(image_write_exr(path, &im, NULL));
     mem_free(file_read(path, 0, &size));
@@ -211,11 +264,13 @@ static void failed_writes_end(void) {
         limit = before;
         limit.rlim_cur = i < 8 ? 60 * i : (i - 8) * size / 8;
         CHECK(setrlimit(RLIMIT_FSIZE, &limit) == 0);
-        CHECK(!image_write_exr(path, &im, NULL));
+        CHECK(!image_write_exr(path, i % 2 ? &head : &im, &options));
     }
     alarm(0);
     CHECK(setrlimit(RLIMIT_FSIZE, &before) == 0);
     CHECK(image_read(path, &back) && differing_bits(&im, &back) == 0);
+    mem_free(rows.asked);
+    image_finish(&head);
     image_finish(&im);
     image_finish(&back);
 }
@@ -227,6 +282,10 @@ int main(void) {
     float_round_trip_is_bit_exact(1, 97, 2, 3);
     float_round_trip_is_bit_exact(123, 777, 3, 4);
     float_round_trip_is_bit_exact(640, 1025, 4, 8);
+    rows_give_the_same_file(123, 1, 2, 1);
+    rows_give_the_same_file(65, 16, 3, 8);
+    rows_give_the_same_file(20, 777, 2, 1);
+    rows_give_the_same_file(9, 1025, 40, 3);
     many_layers_keep_their_names();
     colours_come_before_other_channels();
     attributes_and_windows_return();
