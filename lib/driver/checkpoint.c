@@ -128,12 +128,17 @@ void checkpoint_close(struct checkpoint *c) {
 
 bool checkpoint_picture(const struct checkpoint *c, const struct film *film,
                         const struct render_result *result) {
+    // Masks and other primaries need a whole picture; others are made while they are written.
+    const bool whole = c->job->cryptomatte || c->options.space != SPACE_REC709;
+    struct image_exr_options exr = c->options.exr ? *c->options.exr : (struct image_exr_options){0};
     struct image im = {0};
-    bool written = job_image(c->job, film, result, &im);
+    exr.rows = (struct image_rows){film_rows, film};
+    bool written = whole ? job_image(c->job, film, result, &im)
+                         : job_image_head(c->job, film, result, &im);
     if (written) {
         film_head_label(c->head, film, result->noise, &im);
         image_from_rec709(&im, c->options.space);
-        written = image_write_exr(c->options.output, &im, c->options.exr);
+        written = image_write_exr(c->options.output, &im, &exr);
     }
     image_finish(&im);
     return written;

@@ -227,9 +227,10 @@ void film_head_label(const struct json *head, const struct film *film, double no
     image_set_number(im, "relume.samples", (double)film_samples(film));
     if (noise >= 0)
         image_set_number(im, "relume.noise", noise);
-    if (film_clamped(film) >= 0) {
+    const double clamped = film_clamped(film);
+    if (clamped >= 0) {
         json_read_number(json_get(json_get(head, "film"), "clamp"), &clamp);
         image_set_number(im, "relume.clamp", clamp);
-        image_set_number(im, "relume.clampedShare", film_clamped(film));
+        image_set_number(im, "relume.clampedShare", clamped);
     }
 }

@@ -266,15 +266,23 @@ struct film *job_render(struct job *job, struct render_result *result) {
     return film;
 }
 
-bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
-               struct image *im) {
+bool job_image_head(const struct job *job, const struct film *film,
+                    const struct render_result *result, struct image *im) {
     if (film_samples(film) == 0) {
         log_error("stopped before every pixel had its first sample: there is no picture to write");
         return false;
     }
-    if (!film_image(film, im))
+    if (!film_image_head(film, im))
         return false;
     image_set_number(im, "relume.seed", job->render.tracer.seed);
     image_set_number(im, "relume.seconds", result->seconds);
+    return true;
+}
+
+bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
+               struct image *im) {
+    if (!job_image_head(job, film, result, im))
+        return false;
+    film_image_pixels(film, im);
     return cryptomatte_add(job, job->cryptomatte, film_samples(film), im);
 }

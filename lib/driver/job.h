@@ -70,6 +70,9 @@ void job_trace(struct job *job, struct film *film, struct render_result *result)
 // Both.
 struct film *job_render(struct job *job, struct render_result *result);
 
-// The picture with its layers. false after an error message.
+// The picture's size, names and attributes; its pixels are film_rows. false after an error message.
+bool job_image_head(const struct job *job, const struct film *film,
+                    const struct render_result *result, struct image *im);
+// The picture with its layers, masks too. false after an error message.
 bool job_image(const struct job *job, const struct film *film, const struct render_result *result,
                struct image *im);

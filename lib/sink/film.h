@@ -95,5 +95,10 @@ double film_noise(const struct film *f);
 // Share of the picture's light (luminance) that the clamp has cut off; negative: there is no clamp.
 double film_clamped(const struct film *f);
 
-// The picture and its layers so far.
+// The picture and its layers so far; its rows are made by several threads.
 bool film_image(const struct film *f, struct image *im);
+// The same in two steps. The first gives names without pixels.
+bool film_image_head(const struct film *f, struct image *im);
+void film_image_pixels(const struct film *f, struct image *im);
+// Some rows of it, y from the top of the picture: struct image_rows of a film.
+void film_rows(const void *film, int y, int rows, float *pixels);

@@ -5,6 +5,7 @@
 
 #include "base/log.h"
 #include "base/mem.h"
+#include "base/thread.h"
 #include "math/vec.h"
 #include "sink/film_layout.h"
 
@@ -71,14 +72,14 @@ double film_clamped(const struct film *f) {
 // ---- channels -----------------------------------------------------------------------------------
 
 struct writer {
-    struct image *im; // NULL: only count the channels
+    struct image *im; // is named
+    float *pixel;     // is written; both NULL: channels are only counted
     int next;
-    float *pixel;
 };
 
-// Declares one channel; the value is stored when a pixel is being written.
+// Declares one channel.
 static void put(struct writer *w, const char *layer, const char *channel, double value) {
-    if (w->im && w->pixel)
+    if (w->pixel)
         w->pixel[w->next] = (float)value;
     else if (w->im)
         snprintf(w->im->channel_names[w->next], sizeof w->im->channel_names[0], "%s%s%s", layer,
@@ -156,27 +157,56 @@ static void put_pixel(struct writer *w, const struct film *f, const struct film_
         put_aovs(w, l, sums, (double)n->all);
 }
 
-bool film_image(const struct film *f, struct image *im) {
+bool film_image_head(const struct film *f, struct image *im) {
     const struct film_options *o = film_get_options(f);
     double *sums = mem_array(film_get_layout(f)->channels, sizeof *sums);
     struct film_counts n;
     struct writer w = {0};
     film_pixel_counts(f, o->x0, o->y0, &n);
     put_pixel(&w, f, &n, sums);
-    if (!image_init(im, o->x1 - o->x0, o->y1 - o->y0, w.next)) {
-        mem_free(sums);
-        return false;
-    }
+    const bool made = image_init_head(im, o->x1 - o->x0, o->y1 - o->y0, w.next);
     w = (struct writer){.im = im};
-    put_pixel(&w, f, &n, sums); // names
-    w.pixel = im->pixels;
-    for (int y = o->y0; y < o->y1; y++)
-        for (int x = o->x0; x < o->x1; x++, w.pixel += im->channels) {
-            w.next = 0;
-            film_pixel(f, x, y, sums);
-            film_pixel_counts(f, x, y, &n);
-            put_pixel(&w, f, &n, sums);
+    if (made)
+        put_pixel(&w, f, &n, sums); // names
+    mem_free(sums);
+    return made;
+}
+
+void film_rows(const void *film, int y, int rows, float *pixels) {
+    const struct film_options *o = film_get_options(film);
+    double *sums = mem_array(film_get_layout(film)->channels, sizeof *sums);
+    struct film_counts n;
+    for (int i = o->y0 + y; i < o->y0 + y + rows; i++)
+        for (int x = o->x0; x < o->x1; x++) {
+            struct writer w = {.pixel = pixels};
+            film_pixel(film, x, i, sums);
+            film_pixel_counts(film, x, i, &n);
+            put_pixel(&w, film, &n, sums);
+            pixels += w.next;
         }
     mem_free(sums);
+}
+
+struct development {
+    const struct film *film;
+    struct image *im;
+};
+
+static void develop_row(void *ctx, size_t row, int worker) {
+    const struct development *d = ctx;
+    (void)worker;
+    film_rows(d->film, (int)row, 1,
+              d->im->pixels + row * (size_t)d->im->width * (size_t)d->im->channels);
+}
+
+void film_image_pixels(const struct film *f, struct image *im) {
+    image_add_pixels(im);
+    thread_for(0, (size_t)im->height, develop_row, &(struct development){f, im});
+}
+
+bool film_image(const struct film *f, struct image *im) {
+    if (!film_image_head(f, im))
+        return false;
+    film_image_pixels(f, im);
     return true;
 }

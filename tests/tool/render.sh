@@ -156,7 +156,8 @@ END
 mkdir "$folder/small"
 if mount -t tmpfs -o size=256k none "$folder/small" 2>/dev/null; then
     cp "$scene" "$folder/small/x.exr"
-    for options in "--size 280x280 --spp 2" "--size 512x256 --spp 1000000000" "--size 512x512 --spp 1000000000 --checkpoint 1"; do
+    for options in "--size 280x280 --spp 2" "--size 512x256 --spp 1000000000" \
+        "--size 250x250 --spp 2 --light-groups --paths --variance" "--size 512x512 --spp 1000000000 --checkpoint 1"; do
         # shellcheck disable=SC2086 # words
         expect 1 timeout 20 "$relume" render "$folder/clamp.xml" -o "$folder/small/x.exr" $options
         contains "$err" "x.exr"
@@ -223,6 +224,22 @@ for signal in INT TERM; do
     python3 -c "import sys; sys.exit(not 0 < $(attribute "$out" relume.samples) < 1e9)" ||
         fail "relume.samples is $(attribute "$out" relume.samples)"
 done
+
+# The same with layers, which are made while they are written: each is whole.
+stopped INT "$relume" render "$scene" -o "$picture" --spp 1000000000 --size 320x200 --light-groups --paths \
+    --variance
+echo "with layers: stopped after $seconds s"
+[ "$code" = 3 ] || fail "exit code $code after SIGINT with layers, expected 3: $err"
+python3 -c "import sys; sys.exit($seconds > 2)" || fail "it took $seconds s to stop with layers"
+expect 0 "$relume" info "$picture" --json
+python3 - "$out" <<'END' || fail "layers of a stopped render are not what they were in memory"
+import json, sys
+one = {layer + c for layer in ("", "sky.", "emission.") for c in "RGB"}
+channels = json.loads(sys.argv[1])["channels"]
+wrong = [c for c in channels if c["min"] != c["max"] or abs(c["min"] - (c["name"] in one)) > 1e-30]
+print(len(channels), "channels, wrong:", wrong)
+sys.exit(len(channels) < 30 or wrong != [])
+END
 
 # Known before an hour of rendering: names of layers, of files; a format that is none.
 for name in rest variance; do
