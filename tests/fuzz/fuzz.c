@@ -21,9 +21,9 @@
 
 enum { BATCH = 200, SECONDS = 10, WALL_SECONDS = 120 };
 
-enum outcome { PENDING, READ, REFUSED, SILENT, CRASHED, HUNG };
-static const char *const outcome_names[] = {"pending",         "read",    "refused",
-                                            "refused without a word", "crashed", "hung"};
+enum outcome { PENDING, READ, REFUSED, GOOD_REFUSED, SILENT, CRASHED, HUNG };
+static const char *const outcome_names[] = {
+    "pending", "read", "refused", "good and yet refused", "refused without a word", "crashed", "hung"};
 
 struct fuzz {
     const char *name;
@@ -31,11 +31,16 @@ struct fuzz {
     int count;
     uint64_t seed;
     const char **files;
-    int file_count;
+    int file_count, good_count; // the good ones stand first
     int suspect; // the case that hung once; -1: none
     unsigned char *outcomes; // shared with the children
     char directory[64], message_path[128], meshes[128]; // meshes: a link, or empty
 };
+
+// The first cases are the good files as they are.
+static bool is_good(const struct fuzz *f, int i) {
+    return i < f->good_count;
+}
 
 static struct mutant make_case(const struct fuzz *f, int i) {
     struct rng rng = {hash_u64(f->seed) ^ hash_u64((uint64_t)i + 1)};
@@ -44,6 +49,8 @@ static struct mutant make_case(const struct fuzz *f, int i) {
     char *data = file_read(path, 0, &size);
     if (!data)
         exit(2);
+    if (is_good(f, i))
+        return (struct mutant){(unsigned char *)data, size};
     const struct mutant m = mutate((const unsigned char *)data, size, &rng);
     mem_free(data);
     return m;
@@ -68,19 +75,21 @@ static void write_case(const struct fuzz *f, int i, const char *path) {
 
 // What the messages of the case, which begin at byte `from` of the file, make of its refusal; those
 // that make it a fault are shown.
-static enum outcome judge_refusal(const struct fuzz *f, long from, const char *path) {
+static enum outcome judge_refusal(const struct fuzz *f, int i, long from, const char *path) {
     FILE *file = fopen(f->message_path, "rb");
     static char text[1 << 16];
     if (!file || fseek(file, from, SEEK_SET) != 0)
         exit(2);
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);
-    const bool named = strstr(text, path) != NULL;
-    if (decoder_died(text))
+    const bool named = strstr(text, path) != NULL, good = is_good(f, i);
+    if (good)
+        printf("%s: is %s: %s\n", f->files[i], outcome_names[GOOD_REFUSED], text);
+    else if (decoder_died(text))
         printf("%s: its decoder crashed: %s\n", path, text);
     else if (!named)
         printf("%s: refused without a word, or with one that does not name it: %s\n", path, text);
-    return decoder_died(text) ? CRASHED : named ? REFUSED : SILENT;
+    return good ? GOOD_REFUSED : decoder_died(text) ? CRASHED : named ? REFUSED : SILENT;
 }
 
 // 10 seconds of processor time; for the case that a process sleeps, or its child hangs, also wall
@@ -103,7 +112,7 @@ static void run_case(const struct fuzz *f, int i) {
     set_timer(0, 0);
     fflush(stderr);
     const long at = from + snprintf(NULL, 0, "case %d\n", i);
-    f->outcomes[i] = good ? READ : judge_refusal(f, at, path);
+    f->outcomes[i] = good ? READ : judge_refusal(f, i, at, path);
     if (f->outcomes[i] == READ || f->outcomes[i] == REFUSED)
         remove(path);
 }
@@ -175,6 +184,7 @@ static void parse(struct fuzz *f, int argc, char **argv) {
     const char *full = getenv("RELUME_TEST_FULL");
     int long_count = 0;
     f->count = 200;
+    f->good_count = -1;
     f->files = mem_array((size_t)argc, sizeof *f->files);
     for (int i = 1; i < argc; i++) {
         const bool value = i + 1 < argc;
@@ -184,9 +194,13 @@ static void parse(struct fuzz *f, int argc, char **argv) {
             long_count = atoi(argv[++i]);
         else if (strcmp(argv[i], "--seed") == 0 && value)
             f->seed = strtoull(argv[++i], NULL, 10);
+        else if (strcmp(argv[i], "--refused") == 0)
+            f->good_count = f->file_count;
         else
             add_file(f, argv[i]);
     }
+    if (f->good_count < 0)
+        f->good_count = f->file_count;
     if (full && *full && long_count)
         f->count = long_count;
 }
@@ -211,14 +225,14 @@ static void link_meshes(struct fuzz *f) {
 }
 
 static int report(const struct fuzz *f) {
-    int counts[6] = {0};
+    int counts[HUNG + 1] = {0};
     for (int i = 0; i < f->count; i++)
         counts[f->outcomes[i]]++;
     printf("%s: %d copies of %d files, seed %llu:", f->name, f->count, f->file_count,
            (unsigned long long)f->seed);
     for (int k = READ; k <= HUNG; k++)
         printf(" %d %s%s", counts[k], outcome_names[k], k < HUNG ? "," : "\n");
-    return counts[SILENT] + counts[CRASHED] + counts[HUNG] + counts[PENDING] > 0;
+    return counts[GOOD_REFUSED] + counts[SILENT] + counts[CRASHED] + counts[HUNG] + counts[PENDING] > 0;
 }
 
 int fuzz_main(int argc, char **argv, const char *name, fuzz_reader read) {

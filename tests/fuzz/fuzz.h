@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of the fuzz drivers: damaged copies of good files are read in child processes that may
-// take 10 seconds of processor time and 1 GiB (memory_limit.h); each is read, or refused with a
-// message that names the file.
+// The loop of the fuzz drivers: good files and damaged copies of them are read in child processes that
+// may take 10 seconds of processor time and 1 GiB (memory_limit.h); a good file must be read, a copy
+// be read or refused with a message that names the file.
 //
-// usage: DRIVER [--count N] [--full N] [--seed S] FILE...
-//   --count  number of copies, spread evenly over the files (default 200); --full: instead of it
-//            when RELUME_TEST_FULL is set
+// usage: DRIVER [--count N] [--full N] [--seed S] FILE... [--refused FILE...]
+//   --count  number of cases, spread evenly over the files, of which the first is the file as it is
+//            (default 200); --full: instead of it when RELUME_TEST_FULL is set
+//   --refused  what follows is no good file, as where a good one would be too large
 //   FILE     "@/PATH" is relative to $RELUME_SHARED_DATA, and left out when that is not set
-// Exit status: 0, or 1 when a copy crashed (also in a decoder's own process), hung or was refused
-// without a word; its file is kept in the working directory, the messages beside it. 77: no file to start from.
+// Exit status: 0, or 1 when a case crashed (also in a decoder's own process), hung or was refused
+// without a word, or when it is good and was refused; its file is kept in the working directory, the messages beside it. 77: no file to start from.
 #pragma once
 
 #include <stdbool.h>
