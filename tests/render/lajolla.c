@@ -86,7 +86,7 @@ static void compare(const char *path, const struct image *im, int spp) {
     for (int i = 0; i < 3 * SIZE * SIZE; i++) // of a single sample
         variance.pixels[i] *= (float)n;
     ztest_run(&(struct ztest_input){.ref = &ref, .test = &test, .variance = &variance,
-                                    .samples = spp, .ref_samples = n, .test_variance = &error}, &r);
+                                    .variance_of_rgb = true, .samples = spp, .ref_samples = n, .test_variance = &error}, &r);
     printf("  mean differs by %.3f %% +- %.3f %%, largest z of blocks %.2f, of pixels %.2f\n",
            100 * r.relative_difference, 100 * r.relative_error, r.blocks.largest_z,
            r.pixels.largest_z);
