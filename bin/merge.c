@@ -50,9 +50,15 @@ static bool write_journal(const char *output, const struct film_union *u) {
     return j != NULL;
 }
 
-static bool write_picture(const struct values *v, const struct film_union *u) {
+// Values that the picture's numbers do not hold.
+struct overflows {
+    uint64_t all, half;
+};
+
+static bool write_picture(const struct values *v, const struct film_union *u, struct overflows *over) {
     struct image im = {0};
-    const struct image_exr_options exr = {.half = v->half};
+    const struct image_exr_options exr = {.half = v->half, .half_overflows = &over->half,
+                                          .overflows = &over->all};
     bool written = film_image(u->film, &im);
     if (written) {
         film_head_label(u->head, u->film, film_noise(u->film), &im);
@@ -64,11 +70,12 @@ static bool write_picture(const struct values *v, const struct film_union *u) {
     return written;
 }
 
-static void report(const struct values *v, const struct film_union *u) {
+static void report(const struct values *v, const struct film_union *u, const struct overflows *over) {
     const uint64_t samples = film_samples(u->film);
     if (film_clamped(u->film) >= 0)
         log_warn("a clamp removed %.3g %% of the picture's light (layer clamped)",
                  100 * film_clamped(u->film));
+    image_warn_overflows(over->all, over->half);
     if (!v->quiet)
         log_info("%s: %zu parts, %" PRIu64 " samples per pixel", v->output, v->inputs.count, samples);
     if (v->json) {
@@ -76,6 +83,8 @@ static void report(const struct values *v, const struct film_union *u) {
         json_add_text(j, "output", v->output);
         json_add_count(j, "parts", (int64_t)v->inputs.count);
         json_add_count(j, "samples", (int64_t)samples);
+        json_add_count(j, "overflows", (int64_t)over->all);
+        json_add_count(j, "half_overflows", (int64_t)over->half);
         if (film_noise(u->film) >= 0)
             json_add_number(j, "noise", film_noise(u->film));
         if (film_clamped(u->film) >= 0)
@@ -97,14 +106,16 @@ static bool may_convert(const struct values *v, const struct film_union *u) {
 static int run(const void *values, const char *command) {
     const struct values *v = values;
     struct film_union u;
+    struct overflows over = {0};
     if (v->quiet)
         log_set_level(LOG_WARN);
     if (!merge_films(&u, v->inputs.items, v->inputs.count))
         return EXIT_FAILED;
     json_add_text(u.head, "command", command);
-    const bool written = may_convert(v, &u) && write_journal(v->output, &u) && write_picture(v, &u);
+    const bool written = may_convert(v, &u) && write_journal(v->output, &u) &&
+                         write_picture(v, &u, &over);
     if (written)
-        report(v, &u);
+        report(v, &u, &over);
     film_union_finish(&u);
     return written ? EXIT_DONE : EXIT_FAILED;
 }

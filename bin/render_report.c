@@ -20,12 +20,7 @@ void render_report_warnings(const struct render_outcome *o) {
                  100 * o->clamped);
     if (o->one_sample)
         log_warn("the layer variance of one sample per pixel is 0 and tells nothing");
-    if (o->overflows)
-        log_warn("%" PRIu64 " values were beyond the range of 32 bits and became infinite",
-                 o->overflows);
-    if (o->half_overflows)
-        log_warn("%" PRIu64 " values were beyond the range of half and became infinite",
-                 o->half_overflows);
+    image_warn_overflows(o->overflows, o->half_overflows);
 }
 
 void render_report(const struct render_outcome *o) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chunks are made and compressed by several threads but written by one, in order: OpenEXRCore loses
 // chunks that two threads write, and still reports success at the end.
+#include <inttypes.h>
 #include <math.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -64,6 +65,13 @@ static void count_overflows(struct writer *w, const float *values, size_t pixels
         }
     atomic_fetch_add(&w->overflows, infinite);
     atomic_fetch_add(&w->half_overflows, half);
+}
+
+void image_warn_overflows(uint64_t overflows, uint64_t half_overflows) {
+    if (overflows)
+        log_warn("%" PRIu64 " values were beyond the range of 32 bits and became infinite", overflows);
+    if (half_overflows)
+        log_warn("%" PRIu64 " values were beyond the range of half and became infinite", half_overflows);
 }
 
 static bool add_channels(const struct writer *w, int part) {

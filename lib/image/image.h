@@ -77,6 +77,8 @@ struct image_exr_options {
     int threads;              // 0: default
     struct image_rows rows;   // of an image without pixels
 };
+// Warns of what an options' overflows and half_overflows were set to; says nothing of none.
+void image_warn_overflows(uint64_t overflows, uint64_t half_overflows);
 
 // Atomic (base/file.h). ZIP compression. Channel names must differ. options may be NULL.
 bool image_write_exr(const char *path, const struct image *im,

@@ -118,6 +118,10 @@ done
 expect 0 "$relume" render "$scene" -o "$picture" --spp 1 --half -D radiance=1e6 --json
 near "$out" half_overflows $((16 * 12 * 3))
 contains "$err" "$((16 * 12 * 3)) values were beyond the range of half"
+expect 0 "$relume" render "$scene" -o "$picture" --samples 0:64 -D radiance=1e6
+expect 0 "$relume" merge "$picture" -o "$folder/united.exr" --half --json
+near "$out" half_overflows $((16 * 12 * 3))
+contains "$err" "$((16 * 12 * 3)) values were beyond the range of half"
 
 # Beyond the range of float, as the square of a radiance of 1e25 is: the same.
 expect 0 "$relume" render "$scene" -o "$picture" --spp 1 --integrator moment -D radiance=1e25 --json
