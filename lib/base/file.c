@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
@@ -46,6 +47,29 @@ fail:
     if (f)
         fclose(f);
     return NULL;
+}
+
+const void *file_map(const char *path, size_t *size) {
+    struct stat st;
+    void *map = MAP_FAILED;
+    const int fd = open(path, O_RDONLY);
+    if (fd < 0 || fstat(fd, &st) != 0)
+        log_error("%s: cannot be read: %s", path, strerror(errno));
+    else if (!S_ISREG(st.st_mode) || st.st_size == 0)
+        log_error("%s: is %s", path, S_ISREG(st.st_mode) ? "empty" : "not a regular file");
+    else if ((map = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_SHARED, fd, 0)) == MAP_FAILED)
+        log_error("%s: cannot be read: %s", path, strerror(errno));
+    if (fd >= 0)
+        close(fd);
+    if (map == MAP_FAILED)
+        return NULL;
+    *size = (size_t)st.st_size;
+    return map;
+}
+
+void file_unmap(const void *map, size_t size) {
+    if (map)
+        munmap((void *)(uintptr_t)map, size);
 }
 
 bool file_exists(const char *path) {

@@ -14,6 +14,11 @@
 // A file above `limit` bytes (0: 4 GiB) is refused.
 char *file_read(const char *path, size_t limit, size_t *size);
 
+// The whole file as it lies on the disk, of which only what is looked at is read. Not empty. NULL after an
+// error message. A file that others shorten meanwhile kills the program.
+const void *file_map(const char *path, size_t *size);
+void file_unmap(const void *map, size_t size);
+
 bool file_exists(const char *path);
 // Bytes that are free where the file lies or will; infinite where that is not known.
 double file_space(const char *path);

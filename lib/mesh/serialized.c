@@ -251,13 +251,10 @@ static bool read_data(const char *path, const unsigned char *data, size_t size, 
 static bool read_serialized(const char *path, const struct mesh_options *options, struct mesh *m) {
     *m = (struct mesh){0};
     struct mesh_options o = *options;
-    size_t size;
-    char *data = file_read(path, 0, &size);
-    if (!data)
-        return false;
-    const bool good =
-        read_data(path, (const unsigned char *)data, size, o.shape_index, &o.face_normals, m);
-    mem_free(data);
+    size_t size = 0;
+    const void *data = file_map(path, &size); // of many meshes one is read
+    const bool good = data && read_data(path, data, size, o.shape_index, &o.face_normals, m);
+    file_unmap(data, size);
     if (good && mesh_complete(m, path, &o, o.flip_uvs))
         return true;
     mesh_finish(m);
@@ -266,19 +263,18 @@ static bool read_serialized(const char *path, const struct mesh_options *options
 
 // A file without a table at its end has one mesh, which begins where the table would say: at 0.
 static bool count_serialized(const char *path, int *meshes) {
-    size_t size;
-    char *data = file_read(path, 0, &size);
-    const unsigned char *bytes = (const unsigned char *)data;
+    size_t size = 0;
+    const unsigned char *data = file_map(path, &size);
     int version;
-    const bool good = data && check_header(path, bytes, size, 0, &version);
+    const bool good = data && check_header(path, data, size, 0, &version);
     *meshes = 1;
     if (good && size >= 8) {
-        const size_t width = version == 4 ? 8 : 4, count = little(bytes + size - 4, 4);
+        const size_t width = version == 4 ? 8 : 4, count = little(data + size - 4, 4);
         if (count > 0 && count <= (size - 8) / width && count <= INT_MAX &&
-            little(bytes + size - 4 - count * width, (int)width) == 0)
+            little(data + size - 4 - count * width, (int)width) == 0)
             *meshes = (int)count;
     }
-    mem_free(data);
+    file_unmap(data, size);
     return good;
 }
 

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opening a tensor: nothing of the file is believed before it was checked.
-#include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
+#include "base/file.h"
 #include "base/log.h"
 #include "base/mem.h"
 #include "transport/tensor.h"
@@ -370,28 +366,11 @@ static bool read_header(struct tensor_file *f) {
     return f->meta && read_meta(f);
 }
 
-static bool map_file(struct tensor_file *f) {
-    struct stat st;
-    const int fd = open(f->path, O_RDONLY);
-    void *map = MAP_FAILED;
-    if (fd >= 0 && fstat(fd, &st) == 0 && S_ISREG(st.st_mode) && st.st_size > 0)
-        map = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_SHARED, fd, 0);
-    else if (fd >= 0)
-        errno = EINVAL;
-    const int error = errno;
-    if (fd >= 0)
-        close(fd);
-    if (map == MAP_FAILED)
-        return fail(f, "cannot be read: %s", strerror(error));
-    f->map = map;
-    f->size = (size_t)st.st_size;
-    return true;
-}
-
 struct tensor_file *tensor_open(const char *path) {
     struct tensor_file *f = mem_array(1, sizeof *f);
     f->path = arena_strdup(&f->arena, path);
-    if (map_file(f) && read_header(f))
+    f->map = file_map(path, &f->size);
+    if (f->map && read_header(f))
         return f;
     tensor_close(f);
     return NULL;
@@ -448,8 +427,7 @@ bool tensor_check_values(const struct tensor_file *f) {
 void tensor_close(struct tensor_file *f) {
     if (!f)
         return;
-    if (f->map)
-        munmap((void *)f->map, f->size);
+    file_unmap(f->map, f->size);
     json_destroy(f->header);
     json_destroy(f->meta);
     mem_free(f->extents);

@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <zlib.h>
 
+#include "base/mem.h"
 #include "check.h"
 #include "mesh_read.h"
 
@@ -142,6 +143,30 @@ static void serialized_flag_of_face_normals_drops_normals(void) {
     mesh_finish(&m);
 }
 
+// A file is looked at where the mesh lies alone: that with a gigabyte of nothing between the meshes and
+// their table takes no gigabyte of memory.
+static void serialized_reads_one_mesh_of_many(void) {
+    static struct bytes file;
+    const char path[] = "mesh-test-hole.serialized";
+    const long hole = 1L << 30, table = 2 * 8 + 4;
+    make_file(&file, &good);
+    FILE *f = fopen(path, "wb");
+    CHECK(f && fwrite(file.data, 1, file.size - (size_t)table, f) == file.size - (size_t)table &&
+          fseek(f, hole, SEEK_SET) == 0 &&
+          fwrite(file.data + file.size - table, 1, (size_t)table, f) == (size_t)table && fclose(f) == 0);
+    const size_t before = mem_peak();
+    int meshes = 0;
+    CHECK(mesh_reader_serialized.count(path, &meshes) && meshes == 2);
+    for (int i = 0; i < 2; i++) {
+        struct mesh m;
+        CHECK(mesh_reader_serialized.read(path, &(struct mesh_options){.shape_index = i}, &m));
+        CHECK(m.positions && m.positions[2][2] == (i ? 7 : 1));
+        mesh_finish(&m);
+    }
+    CHECK(mem_peak() - before < 100 << 20);
+    remove(path);
+}
+
 static void serialized_refuses_bad_values(void) {
     struct plan p = good;
     p.scale = NAN;
@@ -203,6 +228,7 @@ int main(void) {
     serialized_reads_versions_3_and_4();
     serialized_reads_all_arrays_in_both_precisions();
     serialized_flag_of_face_normals_drops_normals();
+    serialized_reads_one_mesh_of_many();
     serialized_refuses_bad_values();
     serialized_refuses_counts_the_file_cannot_hold();
     serialized_refuses_bad_tables();
