@@ -23,6 +23,7 @@ struct bitmap {
     void *texels;
     float *decode; // STORE_U8: 256 values
     spectrum mean;
+    struct texture_range range;
 };
 
 static const char *const filters[] = {"bilinear", "nearest", "trilinear", "ewa", NULL};
@@ -162,16 +163,21 @@ static spectrum texel(const struct bitmap *self, int x, int y) {
     return self->channels == 1 ? spectrum_grey(v[0]) : spectrum_rgb(v[0], v[1], v[2]);
 }
 
-static spectrum compute_mean(const struct bitmap *self) {
+// Mean and range.
+static void survey(struct bitmap *self) {
     double sum[3] = {0, 0, 0};
+    self->range = (struct texture_range){texel(self, 0, 0), texel(self, 0, 0)};
     for (int y = 0; y < self->height; y++)
         for (int x = 0; x < self->width; x++) {
             const spectrum t = texel(self, x, y);
             for (int c = 0; c < 3; c++)
                 sum[c] += t[c];
+            texture_range_add(&self->range, t);
         }
     const double n = (double)self->width * self->height;
-    return spectrum_rgb((float)(sum[0] / n), (float)(sum[1] / n), (float)(sum[2] / n));
+    self->mean = spectrum_rgb((float)(sum[0] / n), (float)(sum[1] / n), (float)(sum[2] / n));
+    if (self->wrap == WRAP_ZERO || self->wrap == WRAP_ONE)
+        texture_range_add(&self->range, spectrum_grey(self->wrap == WRAP_ONE));
 }
 
 static bool prepare(struct object *object, struct arena *arena) {
@@ -190,7 +196,7 @@ static bool prepare(struct object *object, struct arena *arena) {
             store_bytes(self, &im, channel);
         else
             store_floats(self, &im, channel);
-        self->mean = compute_mean(self);
+        survey(self);
     }
     image_finish(&im);
     return ok;
@@ -316,6 +322,11 @@ static spectrum mean(const void *data) {
     return ((const struct bitmap *)data)->mean;
 }
 
+static struct texture_range range(const void *data, const struct mesh *mesh) {
+    (void)mesh;
+    return ((const struct bitmap *)data)->range;
+}
+
 static void size(const void *data, int *width, int *height) {
     *width = ((const struct bitmap *)data)->width;
     *height = ((const struct bitmap *)data)->height;
@@ -324,5 +335,6 @@ static void size(const void *data, int *width, int *height) {
 const struct texture_type texture_bitmap = {
     .entry = {.name = "bitmap", .help = "a picture", .params = params,
               .size = sizeof(struct bitmap)},
-    .prepare = prepare, .eval = eval, .send_for = send_for, .gradient = gradient, .mean = mean, .size = size, .finish = finish,
+    .prepare = prepare, .eval = eval, .send_for = send_for, .gradient = gradient, .mean = mean,
+    .range = range, .reads_uv = true, .size = size, .finish = finish,
 };

@@ -41,8 +41,18 @@ static spectrum mean(const void *data) {
     return 0.5f * (texture_mean(&self->color[0]) + texture_mean(&self->color[1]));
 }
 
+static struct texture_range range(const void *data, const struct mesh *mesh) {
+    const struct checkerboard *self = data;
+    struct texture_range both = texture_range(&self->color[0], mesh);
+    const struct texture_range other = texture_range(&self->color[1], mesh);
+    texture_range_add(&both, other.least);
+    texture_range_add(&both, other.most);
+    return both;
+}
+
 const struct texture_type texture_checkerboard = {
     .entry = {.name = "checkerboard", .help = "two colours in squares", .params = params,
               .size = sizeof(struct checkerboard)},
-    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean,
+    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean, .range = range,
+    .reads_uv = true,
 };

@@ -34,7 +34,7 @@ static spectrum load(const struct mesh_attribute *a, uint32_t i) {
     return spectrum_rgb(p[0], p[1], a->channels > 2 ? p[2] : 0);
 }
 
-// Shapes of a world have the attribute (world_check_attributes); any other surface is black.
+// Shapes of a world have the attribute (world_check_textures); any other surface is black.
 static spectrum eval(const void *data, const struct texture_point *at) {
     const struct mesh_attribute_texture *self = data;
     const struct mesh_attribute *a = at->mesh ? mesh_find_attribute(at->mesh, self->name) : NULL;
@@ -53,6 +53,18 @@ static spectrum mean(const void *data) {
     return spectrum_grey(0.5f * self->scale);
 }
 
+static struct texture_range range(const void *data, const struct mesh *mesh) {
+    const struct mesh_attribute_texture *self = data;
+    const struct mesh_attribute *a = mesh ? mesh_find_attribute(mesh, self->name) : NULL;
+    if (!a || mesh->triangle_count == 0)
+        return (struct texture_range){spectrum_grey(0), spectrum_grey(0)};
+    const uint32_t count = a->per_face ? mesh->triangle_count : mesh->vertex_count;
+    struct texture_range range = {self->scale * load(a, 0), self->scale * load(a, 0)};
+    for (uint32_t i = 1; i < count; i++)
+        texture_range_add(&range, self->scale * load(a, i));
+    return range;
+}
+
 static const char *attribute(const void *data) {
     return ((const struct mesh_attribute_texture *)data)->name;
 }
@@ -60,5 +72,5 @@ static const char *attribute(const void *data) {
 const struct texture_type texture_mesh_attribute = {
     .entry = {.name = "mesh_attribute", .help = "values given by a mesh per vertex or face",
               .params = params, .size = sizeof(struct mesh_attribute_texture)},
-    .prepare = prepare, .eval = eval, .mean = mean, .attribute = attribute,
+    .prepare = prepare, .eval = eval, .mean = mean, .range = range, .attribute = attribute,
 };

@@ -28,6 +28,17 @@ static spectrum mean(const void *data) {
     return texture_mean(&self->factor[0]) * texture_mean(&self->factor[1]) + self->offset;
 }
 
+static struct texture_range range(const void *data, const struct mesh *mesh) {
+    const struct product *self = data;
+    const struct texture_range a = texture_range(&self->factor[0], mesh);
+    const struct texture_range b = texture_range(&self->factor[1], mesh);
+    struct texture_range products = {a.least * b.least, a.least * b.least};
+    texture_range_add(&products, a.least * b.most);
+    texture_range_add(&products, a.most * b.least);
+    texture_range_add(&products, a.most * b.most);
+    return (struct texture_range){products.least + self->offset, products.most + self->offset};
+}
+
 static void size(const void *data, int *width, int *height) {
     const struct product *self = data;
     *width = *height = 1;
@@ -43,5 +54,5 @@ static void size(const void *data, int *width, int *height) {
 const struct texture_type texture_product = {
     .entry = {.name = "product", .help = "two textures multiplied", .params = params,
               .size = sizeof(struct product)},
-    .eval = eval, .mean = mean, .size = size,
+    .eval = eval, .mean = mean, .range = range, .size = size,
 };

@@ -26,6 +26,12 @@ static spectrum mean(const void *data) {
     return spectrum_grey(spectrum_luminance(texture_mean(&self->value)) >= self->threshold);
 }
 
+static struct texture_range range(const void *data, const struct mesh *mesh) {
+    (void)data;
+    (void)mesh;
+    return (struct texture_range){spectrum_grey(0), spectrum_grey(1)};
+}
+
 static void size(const void *data, int *width, int *height) {
     const struct step *self = data;
     *width = *height = 1;
@@ -36,5 +42,5 @@ static void size(const void *data, int *width, int *height) {
 const struct texture_type texture_step = {
     .entry = {.name = "step", .help = "1 where a texture reaches a threshold", .params = params,
               .size = sizeof(struct step)},
-    .eval = eval, .mean = mean, .size = size,
+    .eval = eval, .mean = mean, .range = range, .size = size,
 };

@@ -10,6 +10,13 @@ static const struct entry *const entries[] = {
 
 const struct registry textures = {"texture", entries};
 
+void texture_range_add(struct texture_range *range, spectrum value) {
+    for (int c = 0; c < 3; c++) {
+        range->least[c] = minf(range->least[c], value[c]);
+        range->most[c] = maxf(range->most[c], value[c]);
+    }
+}
+
 void texture_size(const struct object *texture, int *width, int *height) {
     const struct texture_type *type = texture_type_of(texture);
     *width = *height = 1;

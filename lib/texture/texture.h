@@ -23,6 +23,11 @@ struct texture_ref {
     const struct object *texture; // of a struct texture_type
 };
 
+// What a texture can give, a channel at a time.
+struct texture_range {
+    spectrum least, most;
+};
+
 struct texture_type {
     struct entry entry;
     // After the parameters are filled: reads files, builds tables; memory from the arena or owned
@@ -35,10 +40,16 @@ struct texture_type {
     struct vec2 (*gradient)(const void *data, const struct texture_point *at);
     // Mean over the unit square, for sampling decisions and previews.
     spectrum (*mean)(const void *data);
+    // Bounds of eval on a mesh (NULL: on another surface).
+    struct texture_range (*range)(const void *data, const struct mesh *mesh);
     // In texels. NULL: it has none, and counts as 1 x 1.
     void (*size)(const void *data, int *width, int *height);
     // Of the mesh, which every shape with this texture must have. NULL: none.
     const char *(*attribute)(const void *data);
+    // Instead of the surface's (u, v), the attribute is where textures inside are looked up; a
+    // surface without it keeps its own.
+    bool replaces_uv;
+    bool reads_uv; // by itself, rather than by textures inside
     void (*finish)(void *data); // NULL: nothing to do
 };
 
@@ -66,5 +77,13 @@ static inline spectrum texture_mean(const struct texture_ref *r) {
     return r->texture ? texture_type_of(r->texture)->mean(r->texture->data) : r->value;
 }
 
+static inline struct texture_range texture_range(const struct texture_ref *r,
+                                                 const struct mesh *mesh) {
+    return r->texture ? texture_type_of(r->texture)->range(r->texture->data, mesh)
+                      : (struct texture_range){r->value, r->value};
+}
+
+// Makes the range hold a value, too.
+void texture_range_add(struct texture_range *range, spectrum value);
 void texture_size(const struct object *texture, int *width, int *height);
 struct vec2 texture_gradient(const struct texture_ref *r, const struct texture_point *at);

@@ -89,6 +89,14 @@ static spectrum mean(const void *data) {
     return texture_mean(&((const struct uvmap *)data)->texture);
 }
 
+static struct texture_range range(const void *data, const struct mesh *mesh) {
+    return texture_range(&((const struct uvmap *)data)->texture, mesh);
+}
+
+static const char *attribute(const void *data) {
+    return ((const struct uvmap *)data)->attribute;
+}
+
 static void size(const void *data, int *width, int *height) {
     const struct uvmap *self = data;
     *width = *height = 1;
@@ -99,5 +107,6 @@ static void size(const void *data, int *width, int *height) {
 const struct texture_type texture_uvmap = {
     .entry = {.name = "uvmap", .help = "a texture looked up by another set of coordinates",
               .params = params, .size = sizeof(struct uvmap)},
-    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean, .size = size,
+    .prepare = prepare, .eval = eval, .gradient = gradient, .mean = mean,
+    .range = range, .attribute = attribute, .replaces_uv = true, .size = size,
 };

@@ -5,7 +5,7 @@
 #include "base/mem.h"
 #include "base/thread.h"
 #include "phase/phase.h"
-#include "world/attributes.h"
+#include "world/texture_check.h"
 #include "world/unseen.h"
 
 // Measured with tests/bench/packets: bounces of 16 lanes as a packet against single rays.
@@ -172,7 +172,7 @@ struct world *world_create(struct scene *s, int threads) {
     w->radius = length(s->bounds_max - w->centre);
     if (!(w->radius > 0))
         w->radius = 1; // nothing, or a single point: any positive size will do
-    if (!prepare_textures(s) || !prepare_bsdfs(s) || !world_check_attributes(s))
+    if (!prepare_textures(s) || !prepare_bsdfs(s) || !world_check_textures(s))
         goto fail;
     world_drop_unseen(s);
     init_shapes(w, s);

@@ -84,6 +84,7 @@ static void compare(struct arena *arena, const char *file, const struct image *i
         arena_printf(arena, "filename=%s wrap_mode=%s filter_type=%s %s", path_of(file), mode,
                      nearest ? "nearest" : "bilinear", more), NULL);
     struct rng rng = {7};
+    const struct texture_range range = texture_type_of(o)->range(o->data, NULL);
     for (int k = 0; k < 3000; k++) {
         const float u = rng_float(&rng) * 8 - 4, v = rng_float(&rng) * 8 - 4;
         const spectrum t = eval(o, u, v);
@@ -91,8 +92,10 @@ static void compare(struct arena *arena, const char *file, const struct image *i
         const double x = u * WIDTH, y = v * HEIGHT;
         if (nearest && (fabs(x - rint(x)) < 1e-4 || fabs(y - rint(y)) < 1e-4))
             continue;
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < 3; c++) {
             CHECK_NEAR(t[c], lookup(im, mode, nearest, u, v, c), 2e-5);
+            CHECK(t[c] >= range.least[c] - 1e-5f && t[c] <= range.most[c] + 1e-5f);
+        }
         CHECK(t[3] == 0);
     }
     const float odd[] = {NAN, INFINITY, -INFINITY, 1e30f, -1e30f, 16777216, 0, 1};
