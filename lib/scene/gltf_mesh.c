@@ -94,13 +94,16 @@ static void read_more_uvs(struct gltf *g, const struct json *primitive, const ch
     }
 }
 
-// COLOR_0 becomes the attributes vertex_color, and vertex_alpha where it has four components.
-static void read_colours(struct gltf *g, const struct json *primitive, struct mesh *m) {
+// COLOR_0 becomes the attributes vertex_color, and vertex_alpha where it has four components, clamped as
+// the format wants it.
+static void read_colours(struct gltf *g, const struct json *primitive, const char *at, struct mesh *m) {
     const struct json *a = attribute(g, primitive, "COLOR_0");
     if (!a)
         return;
     const bool alpha = strcmp(json_text(json_get(a, "type")), "VEC4") == 0;
     float *all = gltf_read_floats(g, a, 4);
+    if (!all_finite(all, 4 * (size_t)m->vertex_count))
+        gltf_warn(g, "%s: COLOR_0 has values that are not finite; they count as zero", at);
     for (uint32_t k = 0; k < (alpha ? 2 : 1); k++) {
         struct mesh_attribute *out = &m->attributes[m->attribute_count++];
         out->channels = k ? 1 : 3;
@@ -148,7 +151,7 @@ bool gltf_read_primitive(struct gltf *g, const struct json *primitive, const cha
     const int more = __builtin_popcountll(wants->more_uvs);
     if (more || attribute(g, primitive, "COLOR_0"))
         m->attributes = mem_array(2 + (size_t)more, sizeof *m->attributes);
-    read_colours(g, primitive, m);
+    read_colours(g, primitive, at, m);
     read_more_uvs(g, primitive, at, wants->more_uvs, m);
     warn_of_poses(g, primitive);
     if (!*failed && m->triangle_count > 0)

@@ -105,9 +105,13 @@ static float linearise(const struct bitmap *self, const struct image *im, float 
     return self->gamma < 0 || im->srgb_encoded ? srgb_to_linear(v) : v;
 }
 
-// What the file holds and a colour cannot be: NaN and infinity become 0.
-static float checked(float v) {
-    return isfinite(v) ? v : 0;
+// What a channel of the file means; what no colour can be, NaN and infinity, becomes 0 and is no longer
+// good.
+static float value_of(const struct bitmap *self, const struct image *im, float v, bool *good) {
+    const float linear = linearise(self, im, v);
+    const bool finite = isfinite(v) && isfinite(linear);
+    *good = *good && finite;
+    return finite ? linear : 0;
 }
 
 static void store_bytes(struct bitmap *self, const struct image *im, const int channel[3]) {
@@ -124,15 +128,19 @@ static void store_bytes(struct bitmap *self, const struct image *im, const int c
         }
 }
 
-static void store_floats(struct bitmap *self, const struct image *im, const int channel[3]) {
+// The number of texels that are not finite.
+static size_t store_floats(struct bitmap *self, const struct image *im, const int channel[3]) {
     const size_t pixels = (size_t)im->width * (size_t)im->height;
     const size_t count = pixels * (size_t)self->channels;
     float *floats = mem_array(count, sizeof *floats), *out = floats;
-    for (size_t p = 0; p < pixels; p++)
-        for (int c = 0; c < self->channels; c++) {
-            const float v = im->pixels[p * (size_t)im->channels + (size_t)channel[c]];
-            *out++ = checked(linearise(self, im, checked(v)));
-        }
+    size_t bad = 0;
+    for (size_t p = 0; p < pixels; p++) {
+        bool good = true;
+        for (int c = 0; c < self->channels; c++)
+            *out++ = value_of(self, im, im->pixels[p * (size_t)im->channels + (size_t)channel[c]],
+                              &good);
+        bad += !good;
+    }
     uint16_t *halves = mem_array(count, sizeof *halves);
     bool exact = true;
     for (size_t i = 0; i < count && exact; i++)
@@ -140,6 +148,7 @@ static void store_floats(struct bitmap *self, const struct image *im, const int 
     self->storage = exact ? STORE_HALF : STORE_FLOAT;
     self->texels = exact ? (void *)halves : (void *)floats;
     mem_free(exact ? (void *)floats : (void *)halves);
+    return bad;
 }
 
 static spectrum texel(const struct bitmap *self, int x, int y) {
@@ -180,6 +189,17 @@ static void survey(struct bitmap *self) {
         texture_range_add(&self->range, spectrum_grey(self->wrap == WRAP_ONE));
 }
 
+// Once a file.
+static void tell_of_bad(const struct object *object, size_t bad, struct arena *arena) {
+    static const char told[] = "texels told to be bad";
+    struct bitmap *self = object->data;
+    if (bad == 0 || arena_find(arena, told, self->filename))
+        return;
+    arena_keep(arena, told, self->filename, self);
+    log_warn_at(object->at, "bitmap: %s has %zu texels that are not finite; they count as zero",
+                self->filename, bad);
+}
+
 static bool prepare(struct object *object, struct arena *arena) {
     struct bitmap *self = object->data;
     struct image im = {0};
@@ -195,7 +215,7 @@ static bool prepare(struct object *object, struct arena *arena) {
         if (im.bits == 8)
             store_bytes(self, &im, channel);
         else
-            store_floats(self, &im, channel);
+            tell_of_bad(object, store_floats(self, &im, channel), arena);
         survey(self);
     }
     image_finish(&im);

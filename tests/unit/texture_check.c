@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of textures when a world is made: values that no reflectance has, coordinates and attributes that a mesh lacks; each once, and in a time that grows with
+// What is said of textures when a world is made: values that no reflectance has, texels that are no
+// numbers, coordinates and attributes that a mesh lacks; each once, and in a time that grows with
 // the scene.
 #include <time.h>
 
@@ -90,6 +91,8 @@ static const struct {
     {SPHERE("<emitter type='area'>" BOARD("radiance", "1", "4") "</emitter>"), NULL},
     {MESH("bare.ply", DIFFUSE(ATTRIBUTE("reflectance", ""))), "is the mesh_attribute of line 2 with values from 0 to 3"},
     {MESH("bare.ply", DIFFUSE(ATTRIBUTE("reflectance", "<float name='scale' value='0.25'/>"))), NULL},
+    {SPHERE(DIFFUSE(PICTURE("reflectance", "odd.exr"))) SPHERE(DIFFUSE(PICTURE("reflectance", "odd.exr"))),
+     "odd.exr has 2 texels that are not finite; they count as zero"},
     {MESH("mapped.ply", DIFFUSE(PICTURE("reflectance", "good.exr"))), NULL},
     {MESH("bare.ply", DIFFUSE(PICTURE("reflectance", "good.exr"))),
      "scene.xml:2: bitmap: the mesh of the shape \"ply\" of line 2 has no texture coordinates"},
@@ -163,6 +166,7 @@ int main(void) {
     write_picture("good.exr", 0.5f, 1);
     write_picture("high.exr", 37.5f, 1);
     write_picture("low.exr", -0.5f, 0.125f);
+    write_picture("odd.exr", NAN, INFINITY);
     says_what_is_odd_once();
     an_attribute_that_is_lacking_is_an_error();
     many_textures_take_no_more_time_each();
