@@ -18,6 +18,8 @@ static int make_rays(struct ray rays[ACCEL_PACKET]) {
         }
     rays[n++] = (struct ray){good_o, good_d, NAN, INFINITY};
     rays[n++] = (struct ray){good_o, good_d, 0, NAN};
+    // Embree without assertions lets this one meet what lies behind it.
+    rays[n++] = (struct ray){-good_o, good_d, -100, INFINITY};
     return n;
 }
 
