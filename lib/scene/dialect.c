@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The elements of Mitsuba's scene language, and what versions before 2 called them.
+// The elements of Mitsuba's scene language, what versions before 2 called them, and what those
+// versions take where a file says nothing.
 #include <ctype.h>
 #include <stdio.h>
 #include <string.h>
@@ -83,6 +84,8 @@ const char *tag_nearest(const char *tag) {
 // "intIOR" -> "int_ior", "toWorld" -> "to_world": as Mitsuba 3 upgrades old files.
 static const char *snake_case(const char *name, struct arena *arena) {
     const size_t n = strlen(name);
+    if (n == 1) // B and C of mitchell
+        return name;
     char *out = arena_alloc(arena, 2 * n + 1);
     size_t k = 0;
     for (size_t i = 0; i < n; i++) {
@@ -170,8 +173,62 @@ static bool check_required(const struct xml_node *node, const char *list) {
     return true;
 }
 
+// ---- what old objects mean ------------------------------------------------------------------
+
+// The first child with one of these names, or NULL.
+static struct xml_node *find_named(const struct xml_node *node, const char *names) {
+    for (struct xml_node *c = node->first; c; c = c->next) {
+        const char *name = xml_get(c, "name");
+        if (name && listed(names, name))
+            return c;
+    }
+    return NULL;
+}
+
+#define METAL "conductor roughconductor "
+#define SKY "sunsky "
+#define MEDIUM "homogeneous "
+
+// Parameters that version 0.6 gives another value than version 3 where a file does not; in order,
+// since one that is added counts as given.
+static const struct old_default {
+    const char *types, *name, *tag, *value;
+    const char *unless; // one of these is given
+} old_defaults[] = {
+    {METAL, "eta", "rgb", "0.2010055 0.9237495 1.102215", "eta material "}, // copper
+    {METAL, "k", "rgb", "3.913262 2.453045 2.14209", "k material "},
+    {METAL, "ext_eta", "string", "air", "ext_eta "},
+    {MEDIUM, "sigma_s", "rgb", "74 88 101", "sigma_s sigma_t albedo material "}, // skin
+    {MEDIUM, "sigma_a", "rgb", "3.2 17 48", "sigma_a sigma_t albedo material "},
+    {MEDIUM, "sigma_t", "rgb", "77.2 105 149", "sigma_t sigma_s material "},
+    {MEDIUM, "albedo", "rgb", "0.958549 0.838095 0.677852", "albedo sigma_s material "},
+    {SKY, "albedo", "rgb", "0.2", "albedo "},
+};
+
+static void add_defaults(struct reader *r, struct xml_node *node, const char *type) {
+    for (size_t i = 0; i < sizeof old_defaults / sizeof *old_defaults; i++) {
+        const struct old_default *d = &old_defaults[i];
+        if (listed(d->types, type) && !find_named(node, d->unless))
+            append_text(r, node, d->tag, d->name, d->value);
+    }
+}
+
+// In old versions sunScale and skyScale stand in place of scale, in version 3 beside it.
+static void upgrade_sky_scale(struct reader *r, struct xml_node *node) {
+    struct xml_node *scale = find_named(node, "scale ");
+    const bool sun = find_named(node, "sun_scale "), sky = find_named(node, "sky_scale ");
+    if (!scale || (!sun && !sky))
+        return;
+    if (!sun || !sky) {
+        xml_set(scale, "name", sun ? "sky_scale" : "sun_scale", r->arena);
+        return;
+    }
+    ignore_name(r, "scale", scale->at);
+    xml_set(scale, "value", "1", r->arena);
+}
+
 // The four parameters by which old versions placed textures, as the transform they mean.
-bool dialect_upgrade_uv(struct reader *r, struct xml_node *node) {
+static bool upgrade_uv(struct reader *r, struct xml_node *node) {
     const char *const names[4] = {"uoffset", "voffset", "uscale", "vscale"};
     double v[4] = {0, 0, 1, 1};
     bool found = false;
@@ -204,6 +261,15 @@ bool dialect_upgrade_uv(struct reader *r, struct xml_node *node) {
     xml_append(transform, matrix);
     xml_append(node, transform);
     return true;
+}
+
+bool dialect_upgrade_object(struct reader *r, struct xml_node *node) {
+    const char *type = xml_get(node, "type");
+    if (type)
+        add_defaults(r, node, type);
+    if (type && listed(SKY, type))
+        upgrade_sky_scale(r, node);
+    return upgrade_uv(r, node);
 }
 
 static void complain_attribute(const struct xml_node *node, const char *list, const char *name) {

@@ -234,9 +234,11 @@ static bool check_version(const struct xml_node *root, const struct xml_node *in
         *old = includer->old;
         return true;
     }
+    // Before 0.4 cameras and parameters had other meanings.
     char *end;
     const long major = version ? strtol(version, &end, 10) : 0;
-    if (!version || end == version || (*end != '.' && *end != '\0') || major < 0 || major > 3) {
+    if (!version || end == version || (*end != '.' && *end != '\0') || major < 0 || major > 3 ||
+        (major == 0 && strtod(version, NULL) < 0.4)) {
         log_error_at(root->at, "<%s> has version \"%s\", expected 0.4 to 3.x", root->tag,
                      version ? version : "");
         return false;
@@ -276,7 +278,8 @@ static struct xml_node *load_file(struct reader *r, const char *path,
         return NULL;
     mark_old(root, old);
     const struct open_file file = {path, outer, outer ? outer->depth + 1 : 0};
-    if (!substitute_all(r, root) || !dialect_check(r, root) || !expand_children(r, root, &file))
+    if (!substitute_all(r, root) || !dialect_check(r, root) || !expand_children(r, root, &file) ||
+        (old && !dialect_upgrade_object(r, root)))
         return NULL;
     return root;
 }
@@ -352,7 +355,7 @@ static bool expand_node(struct reader *r, struct xml_node *parent, struct xml_no
         return false;
     if (!expand_children(r, node, file))
         return false;
-    if (kind == TAG_OBJECT && node->old && !dialect_upgrade_uv(r, node))
+    if (kind == TAG_OBJECT && node->old && !dialect_upgrade_object(r, node))
         return false;
     xml_append(parent, node);
     return true;

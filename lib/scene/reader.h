@@ -99,8 +99,9 @@ const char *tag_nearest(const char *tag);
 bool dialect_check(struct reader *r, struct xml_node *node);
 // A parameter's name as the file of that element would spell it.
 const char *dialect_spelling(const struct xml_node *node, const char *name, struct arena *arena);
-// Of an object of an old file, once its children have been checked.
-bool dialect_upgrade_uv(struct reader *r, struct xml_node *node);
+// Of an object of an old file, once its children have been checked: as version 3 would write it,
+// with what the old version takes for parameters that are not given.
+bool dialect_upgrade_object(struct reader *r, struct xml_node *node);
 
 // ---- ids.c ----------------------------------------------------------------------------------
 

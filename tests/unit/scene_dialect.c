@@ -2,6 +2,7 @@
 // Several files, variables, aliases, and the names of versions before 2.
 #include <sys/stat.h>
 
+#include "math/ior.h"
 #include "scene_text.h"
 
 static void variables(void) {
@@ -137,6 +138,115 @@ static void old_names(void) {
                        "mean \"max_depth\"?"));
 }
 
+#define OLD_HEAD "<scene version='0.6.0'><sensor type='perspective'/>\n"
+
+static struct scene *parse_old(const char *body) {
+    const struct scene_options options = scene_real_options();
+    char text[2048];
+    snprintf(text, sizeof text, OLD_HEAD "%s" SCENE_TAIL, body);
+    return scene_parse_with(&options, text);
+}
+
+// Metals are copper in air, where version 3 has a mirror in vacuum.
+static void old_metals(void) {
+    static const char *const types[] = {"conductor", "roughconductor"};
+    spectrum eta, k;
+    float air;
+    CHECK(ior_conductor_find("Cu", &eta, &k) && ior_dielectric_find("air", &air));
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "<bsdf type='%s'/><bsdf type='%s'><rgb name='k' value='3'/></bsdf>"
+                 "<bsdf type='%s'><string name='material' value='Au'/><float name='extEta' value='1'/>"
+                 "</bsdf>", types[i], types[i], types[i]);
+        struct scene *s = parse_old(text);
+        CHECK(s && s->bsdf_count == 3);
+        if (s) {
+            const spectrum found = PARAM(spectrum, s->bsdfs[0], "eta");
+            check_colour(found, eta[0], eta[1], eta[2], 0);
+            check_colour(PARAM(spectrum, s->bsdfs[0], "k"), k[0], k[1], k[2], 0);
+            CHECK(PARAM(float, s->bsdfs[0], "ext_eta") == air);
+            check_colour(PARAM(spectrum, s->bsdfs[1], "eta"), eta[0], eta[1], eta[2], 0);
+            check_colour(PARAM(spectrum, s->bsdfs[1], "k"), 3, 3, 3, 0);
+            CHECK(strcmp(PARAM(const char *, s->bsdfs[2], "material"), "Au") == 0);
+            check_colour(PARAM(spectrum, s->bsdfs[2], "eta"), 0, 0, 0, 0); // left to the material
+            CHECK(PARAM(float, s->bsdfs[2], "ext_eta") == 1);
+        }
+        scene_destroy(s);
+        snprintf(text, sizeof text, "<bsdf type='%s'/>", types[i]);
+        s = scene_parse(text);
+        CHECK(s);
+        if (s)
+            check_colour(PARAM(spectrum, s->bsdfs[0], "eta"), 0, 0, 0, 0);
+        scene_destroy(s);
+    }
+    scene_write("metal.xml", "<bsdf version='0.5.0' type='conductor' id='metal'/>");
+    struct scene *s = scene_parse("<include filename='metal.xml'/>");
+    CHECK(s && PARAM(float, s->bsdfs[0], "ext_eta") == air); // a file that is one object
+    scene_destroy(s);
+}
+
+static void check_medium(const char *given, const char *names, double a, double b) {
+    char text[512], name[2][16];
+    snprintf(text, sizeof text, "<medium type='homogeneous'>%s</medium>", given);
+    struct scene *s = parse_old(text);
+    CHECK(s && s->medium_count == 1 && sscanf(names, "%15s %15s", name[0], name[1]) == 2);
+    for (int i = 0; s && i < 2; i++) {
+        const struct volume_ref v = PARAM(struct volume_ref, s->media[0], name[i]);
+        CHECK(v.given);
+        CHECK_NEAR(v.value[0], i ? b : a, 1e-5 * (i ? b : a));
+    }
+    scene_destroy(s);
+}
+
+// A medium of which nothing is said is skin; what is missing of a pair is skin's.
+static void old_media(void) {
+    check_medium("", "sigma_s sigma_a", 74, 3.2);
+    check_medium("<rgb name='sigmaA' value='1'/>", "sigma_s sigma_a", 74, 1);
+    check_medium("<rgb name='sigmaT' value='2'/>", "sigma_t albedo", 2, 74 / 77.2);
+    check_medium("<rgb name='albedo' value='.5'/>", "sigma_t albedo", 77.2, .5);
+    struct scene *s = parse_old("<medium type='homogeneous'><string name='material' value='Apple'/>"
+                                "</medium>");
+    CHECK(s && !PARAM(struct volume_ref, s->media[0], "sigma_s").given);
+    scene_destroy(s);
+}
+
+static void check_sky(const char *light, double scale, double sky, double sun) {
+    struct scene *s = parse_old(light);
+    CHECK(s && s->light_count == 1);
+    if (s) {
+        const struct object *o = s->lights[0].object;
+        check_colour(PARAM(spectrum, o, "albedo"), .2, .2, .2, 1e-7);
+        CHECK(PARAM(float, o, "scale") == (float)scale && PARAM(float, o, "sky_scale") == (float)sky &&
+              PARAM(float, o, "sun_scale") == (float)sun && PARAM(int, o, "up") == 1);
+    }
+    scene_destroy(s);
+}
+
+// Scales of sun and sky stand in place of the common one.
+static void old_skies(void) {
+#define SCALE(name, value) "<float name='" name "' value='" value "'/>"
+    check_sky("<emitter type='sky'/>", 1, 1, 0);
+    check_sky("<emitter type='sun'>" SCALE("scale", "3") "</emitter>", 1, 0, 3);
+    check_sky("<emitter type='sunsky'>" SCALE("scale", "3") "</emitter>", 3, 1, 1);
+    check_sky("<emitter type='sunsky'>" SCALE("scale", "3") SCALE("sunScale", "5") "</emitter>", 1, 3, 5);
+    check_sky("<emitter type='sunsky'>" SCALE("skyScale", "2") SCALE("sunScale", "5") "</emitter>", 1, 2, 5);
+    check_sky("<emitter type='sunsky'>" SCALE("scale", "3") SCALE("skyScale", "2") SCALE("sunScale", "5")
+              "</emitter>", 1, 2, 5);
+    CHECK(captured_has("accepted without effect: scale (line 2)"));
+#undef SCALE
+}
+
+static void old_letters(void) {
+    const struct scene_options options = scene_real_options();
+    struct scene *s = scene_parse_with(&options,
+        "<scene version='0.5.0'><sensor type='perspective'><film type='hdrfilm'>"
+        "<rfilter type='mitchell'><float name='B' value='.5'/></rfilter></film></sensor></scene>");
+    CHECK(s && PARAM(float, s->filter, "B") == .5f);
+    scene_destroy(s);
+    CHECK(!scene_parse_with(&options, "<scene version='0.3.0'><sensor type='perspective'/></scene>"));
+    CHECK(captured_has("scene.xml:1: <scene> has version \"0.3.0\", expected 0.4 to 3.x"));
+}
+
 int main(void) {
     scene_folder_open();
     variables();
@@ -145,6 +255,10 @@ int main(void) {
     include_bomb();
     aliases();
     old_names();
+    old_metals();
+    old_media();
+    old_skies();
+    old_letters();
     scene_folder_close();
     return check_result();
 }
