@@ -131,9 +131,10 @@ static bool read_file(struct reader *r, const struct xml_node *node, struct samp
 
 // ---- single numbers -------------------------------------------------------------------------
 
+// A light of one number has equal energy at all wavelengths; version 0.6 in RGB has grey.
 static bool uniform(const struct xml_node *node, double v, enum param_type use, spectrum *out) {
     *out = spectrum_grey((float)v);
-    if (use == PARAM_EMISSION && strcmp(node->tag, "spectrum") == 0)
+    if (use == PARAM_EMISSION && strcmp(node->tag, "spectrum") == 0 && !node->old)
         *out = (float)v * colour_equal_energy();
     if (spectrum_is_finite(*out))
         return true;

@@ -236,6 +236,22 @@ static void old_skies(void) {
 #undef SCALE
 }
 
+// One number as a light's spectrum: grey, where version 3 has equal energy at all wavelengths.
+static void old_spectrum(void) {
+    const char *body = "<emitter type='constant'><spectrum name='radiance' value='2'/></emitter>"
+                       "<emitter type='point'><spectrum name='intensity' value='400:1 700:1'/></emitter>";
+    struct scene *old = parse_old(body), *s = scene_parse(body);
+    CHECK(old && s);
+    if (old && s) {
+        check_colour(PARAM(spectrum, old->lights[0].object, "radiance"), 2, 2, 2, 0);
+        check_colour(PARAM(spectrum, s->lights[0].object, "radiance"), 2.409, 1.896, 1.818, 2e-3);
+        const spectrum samples = PARAM(spectrum, s->lights[1].object, "intensity");
+        check_colour(PARAM(spectrum, old->lights[1].object, "intensity"), samples[0], samples[1], samples[2], 0);
+    }
+    scene_destroy(old);
+    scene_destroy(s);
+}
+
 static void old_letters(void) {
     const struct scene_options options = scene_real_options();
     struct scene *s = scene_parse_with(&options,
@@ -258,6 +274,7 @@ int main(void) {
     old_metals();
     old_media();
     old_skies();
+    old_spectrum();
     old_letters();
     scene_folder_close();
     return check_result();
