@@ -178,6 +178,7 @@ static bool sampler(struct pbrt *p, struct pbrt_call *c, struct xml_node *out, c
     pbrt_integer(c, "seed", 0, &good);
     pbrt_string(c, "randomization", "", &good);
     pbrt_set_type(p, out, type);
+    sampler_report(c->type, type, c->at);
     tree_integer(p->r, out, "sample_count", samples > 0 ? samples : 1);
     return good;
 }

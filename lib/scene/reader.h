@@ -172,6 +172,8 @@ bool links_resolve(struct reader *r);
 bool meshes_load(struct reader *r);
 // shape: the one it stands in, or SCENE_NONE.
 bool sensor_read(struct reader *r, struct xml_node *node, uint32_t shape);
+// Says that another sampler than a file asks for is taken, if it is.
+void sampler_report(const char *asked, const char *taken, struct where at);
 bool integrator_read(struct reader *r, struct xml_node *node);
 // An integrator inside another. NULL after an error message.
 struct object *integrator_make(struct reader *r, struct xml_node *node);

@@ -130,6 +130,11 @@ static void take_ignored(struct reader *r, struct xml_node *node, const struct e
             ignore_name(r, names[i], node->at);
 }
 
+void sampler_report(const char *asked, const char *taken, struct where at) {
+    if (strcmp(asked, taken) != 0)
+        log_info("%s:%d: sampler \"%s\" is read as \"%s\"", at.file, at.line, asked, taken);
+}
+
 static bool sampler_read(struct reader *r, struct xml_node *node, bool use) {
     const struct registry *samplers = r->options->registries.samplers;
     const char *count = node_take_value(r, node, "sample_count");
@@ -151,6 +156,7 @@ static bool sampler_read(struct reader *r, struct xml_node *node, bool use) {
     if (!o)
         return false;
     if (use) {
+        sampler_report(xml_get(node, "type"), e->name, node->at);
         r->scene->sampler = o;
         r->scene->sample_count = (int)spp;
     }

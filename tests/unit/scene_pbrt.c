@@ -29,6 +29,15 @@ static void keeps_its_state(void) {
     scene_destroy(s);
 }
 
+static void names_its_sampler(void) {
+    struct scene *s = read_pbrt("Sampler \"halton\" " HEAD);
+    CHECK(s && captured_has("scene.pbrt:1: sampler \"halton\" is read as \"sobol\""));
+    scene_destroy(s);
+    s = read_pbrt("Sampler \"sobol\" " HEAD);
+    CHECK(s && !captured_has("is read as"));
+    scene_destroy(s);
+}
+
 static void places_objects(void) {
     struct scene *s = read_pbrt(
         HEAD "Translate 5 0 0\nObjectBegin \"o\" Translate 0 1 0 Shape \"disk\" ObjectEnd\n"
@@ -148,6 +157,7 @@ static void says_what_is_wrong(void) {
 int main(void) {
     scene_folder_open();
     keeps_its_state();
+    names_its_sampler();
     places_objects();
     reads_meshes_and_colours();
     gives_parameters();

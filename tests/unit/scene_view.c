@@ -56,6 +56,24 @@ static void sampler(void) {
     CHECK(captured_has("sampler \"sobel\" is not known; did you mean \"sobol\"?"));
 }
 
+// Samplers that are not there: which takes their place is said, once.
+static void sampler_replaced(void) {
+    static const char *const names[] = {"ldsampler", "halton", "hammersley", "orthogonal", "sobol"};
+    for (int i = 0; i < 5; i++) {
+        char text[512], said[64];
+        snprintf(text, sizeof text, "<scene version='3.0.0'>\n<sensor type='perspective'><sampler type='%s'/>"
+                 "</sensor><sensor type='thinlens'><float name='aperture_radius' value='1'/>"
+                 "<sampler type='%s'/></sensor></scene>", names[i], names[i]);
+        snprintf(said, sizeof said, "scene.xml:2: sampler \"%s\" is read as \"sobol\"", names[i]);
+        struct scene *s = parse(text, NULL, NULL);
+        CHECK(s && strcmp(s->sampler->type->name, "sobol") == 0);
+        const char *first = strstr(captured, said);
+        CHECK((first != NULL) == (strcmp(names[i], "sobol") != 0));
+        CHECK(!first || !strstr(first + 1, said));
+        scene_destroy(s);
+    }
+}
+
 static void check_integrator(const char *xml, const char *wanted, const char *outer,
                              const char *inner, int depth, unsigned warnings) {
     char text[1024];
@@ -171,6 +189,7 @@ int main(void) {
     scene_folder_open();
     film();
     sampler();
+    sampler_replaced();
     integrator_choice();
     faults();
     stray_text();
