@@ -20,6 +20,13 @@ void ignore_name(struct reader *r, const char *name, struct where at) {
     *LIST_ADD(&r->ignored, struct ignored_name) = (struct ignored_name){name, at};
 }
 
+void ignore_child_name(struct reader *r, const struct xml_node *child,
+                       const struct xml_node *target) {
+    const char *name = child->old_name ? child->old_name : xml_get(child, "name");
+    if (name && strcmp(name, target->tag) != 0)
+        ignore_name(r, arena_printf(r->arena, "name=\"%s\"", name), child->at);
+}
+
 void ignored_report(const struct reader *r) {
     char names[1024];
     size_t used = 0;
@@ -148,6 +155,8 @@ static bool fill_object(struct fill *f, struct xml_node *child, child_fn other, 
         log_error_at(child->at, "\"%s\" cannot be a %s", p->name, target->tag);
         return false;
     }
+    if (p && name && param_find(f->e, name) != p)
+        ignore_child_name(f->r, child, target);
     if (p)
         return claim(f, p, child) &&
                param_read_object(f->r, child->at, target, entry, p, f->data);

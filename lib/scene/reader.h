@@ -157,6 +157,9 @@ void object_leave(struct reader *r, struct id_entry *entry);
 // when asked again. NULL: there is none.
 const char *node_take_value(struct reader *r, struct xml_node *node, const char *name);
 void ignore_name(struct reader *r, const char *name, struct where at);
+// The name of a place that an object does not take: it goes where its kind belongs.
+void ignore_child_name(struct reader *r, const struct xml_node *child,
+                       const struct xml_node *target);
 void ignored_report(const struct reader *r);
 
 // ---- media.c, shapes.c, lights.c, meshes.c, view.c ---------------------------------------------------

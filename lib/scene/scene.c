@@ -31,14 +31,26 @@ bool scene_is_format(const char *path) {
     return find_format(path) != NULL;
 }
 
+// What a scene only holds for others to refer to.
+static bool is_definition(const struct xml_node *node) {
+    static const char *const tags[] = {"bsdf", "texture", "spectrum", "medium", "volume", "phase"};
+    for (size_t i = 0; i < sizeof tags / sizeof *tags; i++)
+        if (strcmp(node->tag, tags[i]) == 0)
+            return true;
+    return false;
+}
+
 static bool read_child(struct reader *r, struct xml_node *child) {
     struct id_entry *entry;
     struct xml_node *target = id_resolve(r, child, &entry);
     if (!target)
         return false;
     const struct scene_registries *registries = &r->options->registries;
-    if (tag_kind(child) == TAG_REF) // an object at this level stands there by itself already
-        return true;
+    if (tag_kind(child) == TAG_REF && !is_definition(target)) {
+        log_error_at(child->at, "a reference to the <%s> \"%s\" cannot stand directly in a scene",
+                     target->tag, xml_get(child, "id"));
+        return false;
+    }
     if (strcmp(target->tag, "shape") == 0)
         return shape_read(r, target, entry);
     if (strcmp(target->tag, "bsdf") == 0)

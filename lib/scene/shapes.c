@@ -133,6 +133,9 @@ static bool shape_medium(struct reader *r, const struct xml_node *child, struct 
 static bool shape_child(struct reader *r, struct xml_node *child, struct xml_node *target,
                         struct id_entry *entry, void *ctx) {
     struct contents *c = ctx;
+    if (strcmp(target->tag, "medium") == 0)
+        return shape_medium(r, child, target, entry, c);
+    ignore_child_name(r, child, target);
     if (strcmp(target->tag, "bsdf") == 0) {
         if (c->bsdf) {
             log_error_at(child->at, "a second bsdf in one shape");
@@ -141,8 +144,6 @@ static bool shape_child(struct reader *r, struct xml_node *child, struct xml_nod
         c->bsdf = object_shared(r, r->options->registries.bsdfs, &r->bsdfs, target, entry);
         return c->bsdf != NULL;
     }
-    if (strcmp(target->tag, "medium") == 0)
-        return shape_medium(r, child, target, entry, c);
     const bool is_sensor = strcmp(target->tag, "sensor") == 0;
     if (!is_sensor && strcmp(target->tag, "emitter") != 0)
         return refuse(child, target);

@@ -112,7 +112,35 @@ static void values(void) {
     CHECK(t->colour.texture == s->textures[0] && t->scalar.texture == s->textures[0]);
     CHECK(t->light.texture == s->textures[1]);
     CHECK(t->first == s->bsdfs[0] && t->second == s->bsdfs[1]);
+    CHECK(captured_has("accepted without effect: name=\"anything\" (line 2)"));
     scene_destroy(s);
+}
+
+// Names of places that do not exist, and references where nothing is placed.
+static void places(void) {
+    struct scene *s = scene_parse("<bsdf type='diffuse' id='b'/><texture type='checkerboard' id='t'/>\n"
+                                  "<shape type='sphere'><ref id='b' name='bogus'/></shape>\n"
+                                  "<shape type='sphere'><bsdf type='diffuse' name='fake'/></shape>\n"
+                                  "<shape type='sphere'><ref id='b' name='bsdf'/></shape>\n"
+                                  "<ref id='b'/><ref id='t'/>");
+    CHECK(s && s->bsdf_count == 2 && s->texture_count == 1);
+    CHECK(captured_has("accepted without effect: name=\"bogus\" (line 3), name=\"fake\" (line 4)\n"));
+    scene_destroy(s);
+    static const char *const objects[][2] = {
+        {"sensor", "<sensor type='perspective' id='x'/>"},
+        {"film", "<sensor type='perspective'><film type='hdrfilm' id='x'/></sensor>"},
+        {"shape", "<shape type='sphere' id='x'/>"},
+        {"emitter", "<emitter type='constant' id='x'/>"},
+        {"integrator", "<integrator type='path' id='x'/>"},
+    };
+    for (size_t i = 0; i < sizeof objects / sizeof *objects; i++) {
+        char text[256], said[128];
+        snprintf(text, sizeof text, "%s\n<ref id='x'/>", objects[i][1]);
+        snprintf(said, sizeof said, "scene.xml:3: a reference to the <%s> \"x\" cannot stand directly in a "
+                 "scene", objects[i][0]);
+        CHECK(!scene_parse(text));
+        CHECK(captured_has(said));
+    }
 }
 
 // The message of a faulty material in line 2.
@@ -234,6 +262,7 @@ int main(void) {
     cycle();
     chain();
     lenient();
+    places();
     scene_folder_close();
     return check_result();
 }
