@@ -140,6 +140,16 @@ static int explain_word(const char *word) {
     return found ? EXIT_DONE : report_unknown("kind or name", word, nearest);
 }
 
+// An entry of the kind, or of another that is the same element of a scene: a mesh is a shape.
+static const struct entry *find_entry(const struct kind **k, const char *name) {
+    const struct entry *e = registry_find((*k)->registry, name);
+    for (int i = 0; !e && (*k)->element && i < KINDS; i++)
+        if (kinds[i].element && strcmp(kinds[i].element, (*k)->element) == 0 &&
+            (e = registry_find(kinds[i].registry, name)))
+            *k = &kinds[i];
+    return e;
+}
+
 struct help_options {
     const char *kind, *name;
 };
@@ -160,7 +170,7 @@ static int run(const void *values, const char *command) {
         return help_material(o->name)
                    ? EXIT_DONE
                    : report_unknown("material", o->name, help_nearest_material(o->name));
-    const struct entry *e = registry_find(k->registry, o->name);
+    const struct entry *e = find_entry(&k, o->name);
     if (!e)
         return report_unknown(k->entry.name, o->name, registry_nearest(k->registry, o->name));
     explain(k, e);
@@ -171,8 +181,9 @@ static const struct option_spec options[] = {OPTION_END};
 
 static const struct option_argument arguments[] = {
     {.name = "KIND", .offset = offsetof(struct help_options, kind), .optional = true,
-     .help = "shape, mesh, bsdf, texture, light, sensor, film, filter, sampler, integrator,\n"
-             "spectrum, format, material or subcommand; or the name of one of these"},
+     .help = "shape, mesh, bsdf, texture, light, sensor, medium, phase, volume, film, filter,\n"
+             "sampler, integrator, spectrum, format, material or subcommand; or the name of\n"
+             "an entry of one of these"},
     {.name = "NAME", .offset = offsetof(struct help_options, name), .optional = true,
      .help = "an entry of that kind"},
     {.name = NULL},

@@ -130,6 +130,24 @@ done
 
 expect 0 "$relume" help
 contains "$out" "roughconductor"
+# What the overview lists under a kind is an entry of it.
+overview=$out
+kind=
+while read -r first rest; do
+    if [[ $first == *: ]]; then
+        kind=${first%:}
+    elif [ -n "$kind" ] && [ "$first" != see ]; then
+        for name in $first $rest; do
+            expect 0 "$relume" help "$kind" "$name"
+        done
+    fi
+done < <(tail -n +2 <<<"$overview")
+for name in obj ply serialized; do
+    expect 0 "$relume" help mesh $name
+    text=$out
+    expect 0 "$relume" help shape $name
+    [ "$out" = "$text" ] || fail "help shape $name differs from help mesh $name"
+done
 expect 0 "$relume" help bsdf roughconductor
 contains "$out" "one of beckmann, ggx [beckmann]"
 contains "$out" "number or texture from 0 to 1000 [0.1]"
