@@ -60,6 +60,8 @@ bool projective_prepare(const struct object *self, const struct projective *p,
     *out = p->to_world;
     for (int i = 0; i < 3; i++)
         out->m[i][3] -= centre[i];
+    if (!sensor_reaches(self, (const double[3]){out->m[0][3], out->m[1][3], out->m[2][3]}))
+        return false;
     if (!transform_is_finite(out) || !transform_invert(out, &inverse)) {
         log_error_at(self->at, "%s: to_world is singular, expected an invertible transform",
                      self->type->name);

@@ -35,6 +35,8 @@ static bool prepare(struct object *self, const struct sensor_scene *scene) {
         log_error_at(self->at, "radiancemeter: the direction has no length");
         return false;
     }
+    if (!sensor_reaches(self, o))
+        return false;
     r->ray = (struct ray){v3((float)o[0], (float)o[1], (float)o[2]), d, 0, INFINITY};
     return true;
 }

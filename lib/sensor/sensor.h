@@ -49,3 +49,6 @@ extern const struct registry sensors;
 static inline const struct sensor_type *sensor_type_of(const struct object *o) {
     return (const struct sensor_type *)o->type;
 }
+
+// Whether the shapes of the scene can be met from there, in world space. false after an error message.
+bool sensor_reaches(const struct object *self, const double origin[3]);

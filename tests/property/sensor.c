@@ -70,6 +70,13 @@ static void check_refusals(void) {
         CHECK(!prepare(make_sensor("perspective", bad[i], NULL)));
     const struct transform flat = transform_scale(1, 0, 1);
     CHECK(!prepare(make_sensor("orthographic", "", &flat)));
+    static const char *const all[][2] = {
+        {"perspective", ""}, {"orthographic", ""}, {"thinlens", "aperture_radius=1"}};
+    const struct transform far = transform_translate(0, 0, -1e17), beyond = transform_translate(0, 2e18, 0);
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        CHECK(prepare(make_sensor(all[i][0], all[i][1], &far)));
+        CHECK(!prepare(make_sensor(all[i][0], all[i][1], &beyond)));
+    }
     log_set_level(LOG_INFO);
 }
 
