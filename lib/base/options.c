@@ -71,10 +71,16 @@ static bool parse_seconds(const struct option_spec *o, const char *text, void *v
     const bool number = end != text;
     if (*end == 's' || *end == 'm' || *end == 'h')
         v *= *end == 'h' ? 3600 : *end == 'm' ? 60 : 1, end++;
-    if (!number || *end || !(v > 0) || !in_range(o, v))
-        return complain(o, text, "a duration such as 90, 90s, 15m or 2h");
-    *(double *)value = v;
-    return true;
+    if (number && !*end && v > 0 && in_range(o, v)) {
+        *(double *)value = v;
+        return true;
+    }
+    char most[32] = "";
+    if (o->max > 0)
+        snprintf(most, sizeof most, ", at most %.10gs", o->max);
+    log_error("--%s: found '%s', expected a duration above 0 such as 90, 90s, 15m or 2h%s", o->name,
+              text, most);
+    return false;
 }
 
 static bool parse_choice(const struct option_spec *o, const char *text, void *value) {
@@ -103,8 +109,9 @@ static bool parse_ints(const struct option_spec *o, int count, const char *text,
         const bool separated = last ? *end == '\0' : *end == ',' || *end == 'x';
         if (end == p || !separated || errno || v < INT32_MIN || v > INT32_MAX ||
             !in_range(o, (double)v)) {
-            log_error("--%s: found '%s', expected %s (whole numbers)", o->name, text, o->argument);
-            return false;
+            char kind[64];
+            snprintf(kind, sizeof kind, "%s, whole numbers", o->argument);
+            return complain(o, text, kind);
         }
         ((int *)value)[i] = (int)v;
         p = end + 1;

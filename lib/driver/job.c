@@ -30,6 +30,11 @@ struct scene_define *defines_parse(const struct option_list *texts, struct arena
         }
         d[i].name = arena_printf(arena, "%.*s", (int)(equals - text), text);
         d[i].value = equals + 1;
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(d[k].name, d[i].name) == 0) {
+                log_error("-D %s: \"%s\" is given twice, as %s before", text, d[k].name, d[k].value);
+                return NULL;
+            }
     }
     return d;
 }

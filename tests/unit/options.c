@@ -32,7 +32,7 @@ static const struct option_spec specs[] = {
      .choices = colours, .def = "green", .help = "a colour"},
     {.name = "seed", .type = OPTION_COUNT, .offset = AT(seed), .argument = "N", .help = "a seed"},
     {.name = "real", .type = OPTION_NUMBER, .offset = AT(real), .argument = "X", .help = "a real"},
-    {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "T",
+    {.name = "time", .type = OPTION_SECONDS, .offset = AT(seconds), .argument = "T", .min = 0, .max = 3600,
      .help = "a time"},
     {.name = "text", .type = OPTION_TEXT, .offset = AT(text), .argument = "T", .help = "a text"},
     {.name = "define", .letter = 'D', .type = OPTION_TEXTS, .offset = AT(defines),
@@ -70,10 +70,10 @@ static void values_and_defaults_arrive(void) {
     CHECK(v.rest.count == 0 && v.defines.count == 0);
     options_finish(&table, &v);
     CHECK(parse("a -f --number=3 b --size 640x480 -D x=1 -Dy=2 --seed 18446744073709551615 "
-                "--real -1.5e-3 --time 1.5h --text --odd c --colour red",
+                "--real -1.5e-3 --time 0.5h --text --odd c --colour red",
                 &v) == OPTIONS_OK);
     CHECK(v.flag && v.number == 3 && v.size[0] == 640 && v.size[1] == 480 && v.choice == 0);
-    CHECK(v.seed == UINT64_MAX && v.real == -1.5e-3 && v.seconds == 5400);
+    CHECK(v.seed == UINT64_MAX && v.real == -1.5e-3 && v.seconds == 1800);
     CHECK(v.text && strcmp(v.text, "--odd") == 0);
     CHECK(v.defines.count == 2 && strcmp(v.defines.items[1], "y=2") == 0);
     CHECK(v.rest.count == 2 && strcmp(v.rest.items[0], "b") == 0);
@@ -101,6 +101,7 @@ static void mistakes_are_named(void) {
         {"a --size 640", "WxH"},
         {"a --size 640x0", "WxH"},
         {"a --size 640x480x3", "WxH"},
+        {"a --size 70000x2", "found '70000x2', expected WxH, whole numbers from 1 to 65536"},
         {"a --crop 0,0,0,0", "holds no pixel"},
         {"a --crop 0,5,4,5", "holds no pixel"},
         {"a --crop 0,0,4", "X0,Y0,X1,Y1"},
@@ -110,6 +111,8 @@ static void mistakes_are_named(void) {
         {"a --real 1e999", "a number"},
         {"a --time 5d", "15m"},
         {"a --time -5", "15m"},
+        {"a --time 0", "found '0', expected a duration above 0 such as 90, 90s, 15m or 2h, at most 3600s"},
+        {"a --time 2h", "at most 3600s"},
         {"-f", "FIRST is missing"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
