@@ -34,7 +34,8 @@ static const struct option_argument arguments[] = {
 
 static const struct option_spec options[] = {
     {.name = "output", .letter = 'o', .type = OPTION_TEXT, .offset = AT(output), .argument = "OUT.exr",
-     .help = "the picture to write", .required = true},
+     .help = "the picture to write; relume tonemap makes other pictures of it", .endings = ".exr",
+     .required = true},
     OPTION_GROUP("When to stop"),
     {.name = "spp", .type = OPTION_INT, .offset = AT(spp), .argument = "N", .min = 0, .max = 1 << 30,
      .help = "stop after N samples per pixel; 0: what the scene asks for", .def = "0"},
@@ -216,25 +217,12 @@ static bool is_known(const struct registry *r, const char *name) {
     return false;
 }
 
-static bool is_exr(const char *path) {
-    static const char others[] = " png jpg jpeg tif tiff hdr pfm bmp tga webp ";
-    char extension[16];
-    file_extension(path, extension, sizeof extension);
-    const char *found = *extension ? strstr(others, extension) : NULL;
-    if (!found || found[-1] != ' ' || found[strlen(extension)] != ' ')
-        return true;
-    log_error("-o %s: renderings are written as OpenEXR, expected OUT.exr; relume tonemap makes other "
-              "pictures of it", path);
-    return false;
-}
-
 static int run(const void *values, const char *command) {
     const struct values *v = values;
     uint32_t aovs;
     uint64_t samples[2];
-    if (!is_exr(v->output) || !samples_parse(v->samples, samples) ||
-        !is_known(&integrators, v->integrator) || !is_known(&samplers, v->sampler) ||
-        (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
+    if (!samples_parse(v->samples, samples) || !is_known(&integrators, v->integrator) ||
+        !is_known(&samplers, v->sampler) || (v->aovs && !film_aovs_parse(v->aovs, &aovs)))
         return EXIT_USAGE;
     if (v->space != SPACE_REC709 && (v->variance || v->noise > 0)) {
         log_error("--colour-space %s: errors of channels (--variance, --noise) are those of rec709",

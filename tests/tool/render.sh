@@ -45,6 +45,8 @@ expect 2 "$relume" render "$scene" -o "$picture" --spp many
 contains "$err" "many"
 expect 2 "$relume" render "$scene" -o "$picture" -D radiance
 contains "$err" "NAME=VALUE"
+expect 2 "$relume" render "$scene" -o "$picture" -D radiance=1 -D radiance=2
+contains "$err" '-D radiance=2: "radiance" is given twice, as 1 before'
 expect 1 "$relume" render "$folder/none.xml" -o "$picture"
 contains "$err" "$folder/none.xml"
 expect 1 "$relume" render "$scene" -o "$picture" --crop 0,0,17,12
@@ -55,11 +57,21 @@ expect 2 "$relume" render "$scene" -o "$picture" --aov albdo
 contains "$err" "albedo"
 [ ! -e "$picture" ] || fail "a refused render wrote a file"
 
+sed 's|<film|<transform name="to_world"><lookat origin="0 0 1e50" target="0 0 0"/></transform>&|' \
+    "$scene" >"$folder/beyond.xml"
+expect 1 "$relume" render "$folder/beyond.xml" -o "$picture"
+contains "$err" "beyond.xml:5: perspective: stands 1e+50 from the scene, expected less than 1e+18"
+sed 's|type="perspective">|type="radiancemeter"><point name="origin" x="1e19"/><vector name="direction" z="1"/>|' \
+    "$scene" >"$folder/beyond.xml"
+expect 1 "$relume" render "$folder/beyond.xml" -o "$picture"
+contains "$err" "beyond.xml:5: radiancemeter: stands 1e+19 from the scene"
+
 # What cannot be written is known before the first sample, not after an hour.
 expect 1 timeout 20 "$relume" render "$scene" -o "$folder/none/sky.exr" --spp 1000000000
 contains "$err" "$folder/none"
-expect 1 timeout 20 "$relume" render "$scene" -o "$folder" --spp 1000000000
-contains "$err" "$folder"
+mkdir "$folder/folder.exr"
+expect 1 timeout 20 "$relume" render "$scene" -o "$folder/folder.exr" --spp 1000000000
+contains "$err" "$folder/folder.exr"
 
 # What is there and may not be replaced stays.
 cp "$scene" "$folder/kept.exr"
@@ -263,8 +275,10 @@ for light in "<emitter type='point' id='${long}n'/>" "<emitter type='point' id='
 done
 make_scene clash.xml "<emitter type='point' id='$long'/>"
 expect 0 "$relume" render "$folder/clash.xml" -o "$folder/clash.exr" --light-groups --cryptomatte object --spp 1
-expect 2 "$relume" render "$scene" -o "$folder/sky.png"
-contains "$err" "relume tonemap"
+for name in sky.png sky.txt sky; do
+    expect 2 "$relume" render "$scene" -o "$folder/$name"
+    contains "$err" "--output: found '$folder/$name', expected a name that ends in .exr"
+done
 sed 's/<film type="hdrfilm">/&<string name="pixel_format" value="rbg"\/>/' "$scene" >"$folder/format.xml"
 expect 1 "$relume" render "$folder/format.xml" -o "$folder/format.exr"
 contains "$err" 'pixel_format" is "rbg", expected one of rgb'
