@@ -25,6 +25,10 @@ static bool prepare(struct object *self, const struct sensor_scene *scene) {
     vec3 d = r->direction;
     for (int i = 0; i < 3; i++)
         o[i] = (double)r->origin[i] - scene->centre[i];
+    if (length2(r->origin) > 0 && !(length2(d) > 0)) {
+        log_error_at(self->at, "radiancemeter: an origin without direction, expected both or to_world");
+        return false;
+    }
     if (!(length2(d) > 0)) {
         d = affine_from(&r->to_world).z;
         for (int i = 0; i < 3; i++)

@@ -65,6 +65,9 @@ sed 's|type="perspective">|type="radiancemeter"><point name="origin" x="1e19"/><
     "$scene" >"$folder/beyond.xml"
 expect 1 "$relume" render "$folder/beyond.xml" -o "$picture"
 contains "$err" "beyond.xml:5: radiancemeter: stands 1e+19 from the scene"
+sed -i 's|<vector name="direction" z="1"/>||' "$folder/beyond.xml"
+expect 1 "$relume" render "$folder/beyond.xml" -o "$picture"
+contains "$err" "beyond.xml:5: radiancemeter: an origin without direction, expected both or to_world"
 
 # What cannot be written is known before the first sample, not after an hour.
 expect 1 timeout 20 "$relume" render "$scene" -o "$folder/none/sky.exr" --spp 1000000000
