@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said of textures when a world is made: values that no reflectance has, texels that are no
-// numbers, coordinates and attributes that a mesh lacks; each once, and in a time that grows with
-// the scene.
-#include <time.h>
-
+// numbers, coordinates and attributes that a mesh lacks; each once.
 #include "image/image.h"
-#include "make_object.h"
 #include "scene_text.h"
-#include "world/texture_check.h"
 #include "world/world.h"
 
 static const char mesh_head[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -119,47 +114,6 @@ static void an_attribute_that_is_lacking_is_an_error(void) {
     CHECK(captured_has("has no attribute \"vertex_colr\"; did you mean \"vertex_color\"?"));
 }
 
-// ---- many ---------------------------------------------------------------------------------------
-
-static double seconds_of_processor(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-// The least of a few times that the check takes of n shapes, each with a texture that reads an attribute.
-static double time_of(uint32_t n) {
-    struct arena arena = {0};
-    float values[3] = {0.1f, 0.2f, 0.3f};
-    uint32_t indices[1][3] = {{0, 0, 0}};
-    struct mesh_attribute attribute = {"face_color", 3, true, values};
-    struct scene s = {.texture_count = n, .bsdf_count = n, .shape_count = n};
-    s.textures = arena_alloc(&arena, n * sizeof *s.textures);
-    s.bsdfs = arena_alloc(&arena, n * sizeof *s.bsdfs);
-    s.shapes = arena_alloc(&arena, n * sizeof *s.shapes);
-    for (uint32_t i = 0; i < n; i++) {
-        s.textures[i] = make_texture(&arena, "mesh_attribute", "name=face_color", NULL);
-        s.bsdfs[i] = make_object(&arena, &bsdfs, "diffuse", "", (const struct object *[]){s.textures[i], NULL});
-        s.shapes[i] = (struct shape){.type = "ply", .bsdf = s.bsdfs[i], .light = SCENE_NONE,
-            .mesh = {.triangle_count = 1, .indices = indices, .attributes = &attribute, .attribute_count = 1}};
-    }
-    double least = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        const double start = seconds_of_processor();
-        CHECK(world_check_textures(&s));
-        least = fmin(least, seconds_of_processor() - start);
-    }
-    arena_finish(&arena);
-    return least;
-}
-
-// 16 times as many take 16 times as long and a little; in proportion to the square it would be 256.
-static void many_textures_take_no_more_time_each(void) {
-    const double few = time_of(2000), many = time_of(32000);
-    printf("2000 shapes %.2f ms, 32000 %.2f ms\n", 1e3 * few, 1e3 * many);
-    CHECK(many < 80 * few);
-}
-
 int main(void) {
     scene_folder_open();
     write_meshes();
@@ -169,7 +123,6 @@ int main(void) {
     write_picture("odd.exr", NAN, INFINITY);
     says_what_is_odd_once();
     an_attribute_that_is_lacking_is_an_error();
-    many_textures_take_no_more_time_each();
     scene_folder_close();
     return check_result();
 }
