@@ -248,6 +248,7 @@ static void set_hit(const struct few_facet *f, wide_mask hit, const struct accel
                     struct wide3 o_cross_d, const wide sides[4], struct found *b) {
     if (f->count == 1) {
         set_weights(hit, (const wide[3]){sides[1], sides[2], sides[0]}, f->first[0], b);
+        b->second &= ~hit; // of a quadrilateral behind it
         return;
     }
     const wide diagonal = side(f, FACET_DIAGONAL, r->d, o_cross_d);

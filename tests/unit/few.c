@@ -87,10 +87,25 @@ static struct accel *accel_of(const char *body, struct scene **scene) {
     return a;
 }
 
+// Triangles alone in front of others that share a test: a tetrahedron in a cube.
+static void triangles_in_front_of_quadrilaterals(void) {
+    struct scene *s;
+    scene_write("tetrahedron.obj", "v 0 0 0.9\nv 0.8 0 -0.5\nv -0.5 0.7 -0.4\nv -0.4 -0.7 -0.5\n"
+                                   "f 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n");
+    struct accel *a = accel_of(
+        "<shape type='cube'><transform name='to_world'><scale value='2.5'/></transform></shape>"
+        "<shape type='obj'><string name='filename' value='tetrahedron.obj'/>"
+        "<transform name='to_world'><scale value='2'/></transform></shape>", &s);
+    hits_are_those_of_the_tree(a);
+    accel_destroy(a);
+    scene_destroy(s);
+}
+
 int main(void) {
     struct scene *s;
     scene_folder_open();
     accel_thread_init();
+    triangles_in_front_of_quadrilaterals();
     struct accel *a = accel_of(
         "<shape type='cube'><transform name='to_world'><rotate x='1' y='0.3' angle='40'/>"
         "<translate x='1'/></transform></shape>"
