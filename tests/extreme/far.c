@@ -2,9 +2,13 @@
 // Closed rooms far from the origin shine as at it: radiance 2 from walls of albedo 0.5 that emit 1.
 // Offsets stand in transforms, which are kept in double; vertices that a file gives far away have
 // lost their digits before, and a warning says so.
+//
+// Each of the 24 rows is held to 3 standard errors: 0.065 are expected outside, so that a new choice of
+// seeds fails in 6.3 % (--full: 16 times the samples, by which a bias would stand out). The sum of
+// squares of all rows has chi-square's bounds.
 #include "render/ztable.h"
 
-static const double FALSE_ALARMS = 1e-3;
+static const double FALSE_ALARMS = 1e-3; // of chi-square over all rows
 
 static const char bsdf[] = "<bsdf type='diffuse'><rgb name='reflectance' value='0.5'/></bsdf>";
 static const char emitter[] =
@@ -111,6 +115,6 @@ int main(void) {
         rooms_shine_anywhere(i);
     far_vertices_warn();
     scene_folder_close();
-    ztable_finish(FALSE_ALARMS);
+    ztable_finish_within_three(FALSE_ALARMS);
     return check_result();
 }

@@ -2,10 +2,14 @@
 // Rough materials under a uniform sky: a flat piece reflects (and transmits) its directional albedo
 // of single scattering, which is computed here from the material's own eval by quadrature over the
 // microfacet normals, without any of its sampling code.
+//
+// Each of the 48 rows is held to 3 standard errors: 0.13 are expected outside, so that a new choice of
+// seeds fails in 12 %. Whether such a row is chance is told by --full: at 16 times the samples a bias of
+// 3 standard errors would be one of 12. The sum of squares of all rows has chi-square's bounds.
 #include "make_object.h"
 #include "render/ztable.h"
 
-static const double FALSE_ALARMS = 1e-3;
+static const double FALSE_ALARMS = 1e-3; // of chi-square over all rows
 
 static const double METAL_ETA = 1.5, METAL_K = 2;
 
@@ -144,6 +148,6 @@ int main(void) {
                 test_material(&glass, angles[i]);
             }
     scene_folder_close();
-    ztable_finish(FALSE_ALARMS);
+    ztable_finish_within_three(FALSE_ALARMS);
     return check_result();
 }
