@@ -115,7 +115,7 @@ static void render_scaled(const char *sampler, double l, double e, struct image 
     char text[8192];
     define_all(&d, l, e);
     snprintf(text, sizeof text, scene, sampler);
-    const struct job_options o = {.spp = 16, .variance = true, .aovs = "albedo,N,Ng,Z,uv,shape",
+    const struct job_options o = {.spp = 16, .variance = true, .aovs = "albedo,N,Ng,Z,P,uv,shape",
                                   .reading = {.defines = d.all, .define_count = d.count}};
     render_text(text, &o, im, &result);
     CHECK(result.truncated == 0);
@@ -125,7 +125,9 @@ static void render_scaled(const char *sampler, double l, double e, struct image 
 static double channel_factor(const char *name, double l, double e) {
     if (strcmp(name, "R") == 0 || strcmp(name, "G") == 0 || strcmp(name, "B") == 0)
         return e;
-    return strncmp(name, "variance", 8) == 0 ? e * e : strcmp(name, "Z") == 0 ? l : 1;
+    if (strcmp(name, "Z") == 0 || strncmp(name, "P.", 2) == 0)
+        return l;
+    return strncmp(name, "variance", 8) == 0 ? e * e : 1;
 }
 
 // The channel's largest difference from that of `one`, its factor taken out.
