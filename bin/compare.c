@@ -69,9 +69,13 @@ static const struct option_spec options[] = {
     {.name = "ztest", .type = OPTION_TEXT, .offset = AT(request.variance), .argument = "VAR.exr",
      .help = "also test whether the pictures agree within their noise, by pixels,\n"
              "8x8 blocks and means; exit 1 if not. VAR: the variance of REF's single-\n"
-             "sample estimates, as Mitsuba's ..._var.exr, or a long rendering of the\n"
-             "scene by --sampler independent with a layer `variance`, which is\n"
-             "multiplied by the samples it says"},
+             "sample estimates, as Mitsuba's ..._var.exr, or a picture of the scene\n"
+             "with a layer `variance`. With the latter REF and TEST that have such a\n"
+             "layer both count with their own errors; else VAR's is multiplied by its\n"
+             "samples and divided by those of TEST and REF, which holds for\n"
+             "--sampler independent. Light that no sample of a pixel has met is in no\n"
+             "error: where few, rare samples bring much, more values disagree than\n"
+             "the share printed as that of noise alone says"},
     {.name = "map", .type = OPTION_TEXT, .offset = AT(request.map_path), .argument = "OUT.png",
      .help = "write a picture of the difference", .endings = ".png"},
     {.name = "fail-above", .type = OPTION_TEXTS, .offset = AT(limits), .argument = "METRIC=X",

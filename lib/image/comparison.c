@@ -11,6 +11,9 @@ const char *const comparison_map_names[] = {"flip", "signed", NULL};
 
 static const double MITSUBA_REF_SAMPLES = 32000; // of the references of Mitsuba 3's render tests
 
+// Of a picture by `relume render --variance` (film.h): its layer comes from the spread of so many.
+static const double REPLICATES = 16;
+
 // One picture with what is known of its noise.
 struct side {
     const char *path;
@@ -163,6 +166,17 @@ static bool read_single_variance(const struct comparison_request *request, struc
     return true;
 }
 
+// Those that our variances come from at least, one a sample; 0: they are another renderer's.
+static int count_replicates(const struct side *ref, const struct side *test,
+                            const struct side *variance) {
+    const struct side *sides[] = {ref, test, variance};
+    double least = REPLICATES;
+    for (int i = 0; i < 3; i++)
+        if (sides[i]->rendered && sides[i]->samples > 1)
+            least = fmin(least, sides[i]->samples);
+    return variance->rendered ? (int)least : 0;
+}
+
 static void test_noise(const struct comparison_request *request, const struct side *ref,
                        const struct side *test, const struct side *variance, bool of_layer,
                        struct comparison *result) {
@@ -175,7 +189,9 @@ static void test_noise(const struct comparison_request *request, const struct si
         .samples = result->samples,
         .ref_samples = told > 0 ? told : MITSUBA_REF_SAMPLES,
         .pixels_of_noisy_ref = told > 0,
+        .ref_variance = of_layer && ref->variance.pixels ? &ref->variance : NULL,
         .test_variance = test->variance.pixels ? &test->variance : NULL,
+        .replicates = of_layer ? count_replicates(ref, test, variance) : 0,
     };
     result->ref_samples = in.ref_samples;
     ztest_run(&in, &result->ztest);

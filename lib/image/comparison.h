@@ -15,8 +15,8 @@ extern const char *const comparison_map_names[]; // NULL-terminated
 
 struct comparison_request {
     const char *ref, *test;
-    // Of a single-sample estimate of ref, or a picture with a layer `variance`: do the z-test; NULL:
-    // no.
+    // Of a single-sample estimate of ref, or a picture with a layer `variance`: do the z-test; NULL: no.
+    // With the latter the layers of ref and test, where both have one, are what counts.
     const char *variance;
     // Per pixel, of test and of ref, for the z-test; 0: what the files' attributes "relume.samples" or
     // "samples" say (times the pixels of a box of `downsample`), and 32000 where ref has none.

@@ -61,6 +61,8 @@ bool comparison_check_limit(const char *text, const struct comparison *c, bool *
 static void add_level(struct json *out, const char *name, const struct ztest_level *l) {
     struct json *o = json_add_object(out, name);
     json_add_number(o, "share", l->share);
+    json_add_number(o, "expected_share", 1 - l->p_limit);
+    json_add_number(o, "least_share", l->least_share);
     json_add_count(o, "values", (int64_t)l->values);
     json_add_number(o, "largest_z", l->largest_z);
     json_add_number(o, "p_limit", l->p_limit);
@@ -98,8 +100,9 @@ void comparison_print_json(const struct comparison *c) {
 }
 
 static void print_level(const char *name, const struct ztest_level *l) {
-    printf("z-test %-8s %7.3f %% of %zu values agree, largest z %.2f: %s\n", name, 100 * l->share,
-           l->values, l->largest_z, l->pass ? "pass" : "FAIL");
+    printf("z-test %-8s %7.3f %% of %zu values agree (noise alone: %.5g %%, asked: %.2f %%), largest z "
+           "%.2f: %s\n", name, 100 * l->share, l->values, 100 * (1 - l->p_limit),
+           100 * l->least_share, l->largest_z, l->pass ? "pass" : "FAIL");
 }
 
 void comparison_print(const struct comparison *c) {

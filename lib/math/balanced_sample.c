@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "math/student.h"
 
 struct place {
     uint32_t key, cell;

@@ -4,16 +4,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-double student_95(int degrees) {
-    static const double exact[] = {INFINITY, 12.7062, 4.3027, 3.1824, 2.7764, 2.5706};
-    if (degrees <= 5)
-        return exact[degrees < 0 ? 0 : degrees];
-    // Cornish-Fisher expansion in 1 / degrees (Abramowitz and Stegun 1964, 26.7.5).
-    const double z = 1.959964, n = degrees;
-    return z + (z * z * z + z) / (4 * n) +
-           (5 * pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * n * n) +
-           (3 * pow(z, 7) + 19 * pow(z, 5) + 17 * z * z * z - 15 * z) / (384 * n * n * n);
-}
+#include "math/student.h"
 
 static struct measured with_error(double value, double variance, double reference_error, int runs) {
     struct measured m = {value, NAN, -INFINITY, INFINITY};

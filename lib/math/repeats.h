@@ -27,6 +27,3 @@ struct repeats {
 // independent of each other.
 struct repeats repeats_measure(const double *gram, int runs, double reference_noise,
                                double reference_error);
-
-// Student's t: |t| is below this with probability 0.95.
-double student_95(int degrees);

@@ -7,6 +7,7 @@
 #include "math/hash.h"
 #include "math/line_fit.h"
 #include "math/repeats.h"
+#include "math/student.h"
 #include "statistics.h"
 
 enum { PIXELS = 300, MOST_RUNS = 8 };
@@ -122,6 +123,34 @@ static void student_quantiles(void) {
     CHECK_NEAR(student_95(1000000), 1.95996, 1e-4);
 }
 
+// Probability that |t| is not exceeded: finite sums (Abramowitz and Stegun 1964, 26.7.3 and 26.7.4).
+static double student_within(double t, int n) {
+    const double theta = atan(t / sqrt(n)), c2 = cos(theta) * cos(theta);
+    double term = n % 2 ? cos(theta) : 1, sum = n > 1 ? term : 0;
+    for (int k = n % 2 ? 3 : 2; k < n; k += 2)
+        sum += term *= c2 * (k - 1) / k;
+    return n % 2 ? (theta + sin(theta) * sum) * 2 / M_PI : sin(theta) * sum;
+}
+
+// Far tails by the Cauchy distribution (1 degree of freedom) and in closed form (2).
+static void student_p_values(void) {
+    for (double t = 0.125; t < 1e4; t *= 1.7) {
+        CHECK_NEAR(student_p_value(t, 1) / (2 / M_PI * atan(1 / t)), 1, 1e-11);
+        const double root = sqrt(t * t + 2);
+        CHECK_NEAR(student_p_value(-t, 2) / (2 / (root * (root + t))), 1, 1e-11);
+        CHECK(student_p_value(t, 1e6) >= student_p_value(t, INFINITY));
+    }
+    for (int n = 1; n < 100; n += 1 + n / 8)
+        for (double t = 0.1; t < 40; t *= 1.3)
+            CHECK_NEAR(student_p_value(t, n), 1 - student_within(t, n), 1e-12);
+    CHECK_NEAR(student_p_value(1.959963985, INFINITY), 0.05, 1e-9);
+    CHECK_NEAR(student_p_value(-5, INFINITY), 5.733031e-7, 1e-12);
+    CHECK(student_p_value(0, 15) == 1 && student_p_value(INFINITY, 15) == 0);
+    CHECK(isnan(student_p_value(NAN, 15)));
+    for (int n = 1; n <= 1000; n = 2 * n + 1)
+        CHECK_NEAR(student_p_value(student_95(n), n), 0.05, 1e-4);
+}
+
 static void line_fit_finds_slope_and_error(void) {
     const double x[] = {0, 1, 2, 3}, y[] = {1, -1, -3, -5}, off[] = {1, -0.9, -3.1, -5};
     const double e[] = {0.1, 0.1, 0.1, 0.1};
@@ -148,6 +177,7 @@ int main(void) {
     repeats_finds_known_bias_and_variance();
     repeats_of_two_runs_have_no_error();
     student_quantiles();
+    student_p_values();
     line_fit_finds_slope_and_error();
     return check_result();
 }
