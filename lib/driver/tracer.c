@@ -8,7 +8,7 @@
 
 enum { PACKET_SIDE = 4 }; // a packet of 16 is a 4x4 block of the absolute pixel grid
 
-static const double STOP_SECONDS = 0.5; // of going on after a stop; writing has the rest of two
+static const double STOP_SECONDS = 0.25; // of going on after a stop; writing has the rest of two
 
 struct worker {
     struct trace_context ctx;
