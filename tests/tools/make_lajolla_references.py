@@ -9,7 +9,8 @@ SCENES and VOLUMES are the folders of the scenes and of their .vol files. Writes
 16 pictures with other random numbers each. Needs mitsuba, numpy, OpenEXR.
 
 The files are those of Mitsuba 0.5, which has sigmaA and sigmaS, or density, where Mitsuba 3 has sigma_t
-and albedo, and takes a shape around a medium without a bsdf for no surface.
+and albedo, takes a shape around a medium without a bsdf for no surface, and a light's spectrum of one
+number for grey, where Mitsuba 3 has equal energy.
 """
 import os
 import re
@@ -75,6 +76,7 @@ def translate(text, integrator):
     text = re.sub(r"<!--.*?-->", "", text, flags=re.S)
     text = re.sub(r"<medium.*?</medium>", translate_medium, text, flags=re.S)
     text = re.sub(r"<shape.*?</shape>", translate_shape, text, flags=re.S).replace("<lookAt", "<lookat")
+    text = re.sub(r'<spectrum name="radiance" value="([\d.]+)"/>', r'<rgb name="radiance" value="\1"/>', text)
     text = re.sub(r'<(?:integer name="version"|boolean name="banner")[^>]*>', "", text)
     text = re.sub(r'<integrator type="\w+"', f'<integrator type="{integrator}"', text)
     text = re.sub(r'<integer name="(width|height)" value="\d+"', rf'<integer name="\1" value="{SIZE}"', text)
