@@ -89,12 +89,26 @@ void vertex_finish_light(struct trace_context *ctx, int lane, struct shadow_test
     vertex_add_light(ctx, lane, test);
 }
 
+// Normal, on the surface's outer side, of the frame that a material scatters in, which a bump or normal
+// map tilts. A material around another takes directions into its frame: each axis tells a component.
+static vec3 normal_of(const struct surface *s, const struct closure *closure) {
+    vec3 n = v3(0, 0, 1);
+    for (int axis = 0; axis < 3; axis++) {
+        vec3 w = v3(axis == 0, axis == 1, axis == 2);
+        float factor = 1;
+        for (const struct closure *c = closure; c && c->type->inside;)
+            c = c->type->inside(c, &w, &factor);
+        n[axis] = w[2];
+    }
+    return to_world(&s->point.frame, n[2] < 0 ? -n : n);
+}
+
 void vertex_add_first(struct trace_context *ctx, int lane, const struct surface *s,
                       const struct closure *closure) {
     const double *c = ctx->world->scene->centre;
     const struct sink_surface first = {
         .p = s->p + v3((float)c[0], (float)c[1], (float)c[2]),
-        .n = s->point.frame.n,
+        .n = normal_of(s, closure),
         .ng = s->ng,
         .z = s->t,
         .uv = s->point.at.uv,
