@@ -100,7 +100,7 @@ void comparison_print_json(const struct comparison *c) {
 }
 
 static void print_level(const char *name, const struct ztest_level *l) {
-    printf("z-test %-8s %7.3f %% of %zu values agree (noise alone: %.5g %%, asked: %.2f %%), largest z "
+    printf("z-test %-8s %7.3f %% of %zu values agree (noise alone: %.7g %%, asked: %.2f %%), largest z "
            "%.2f: %s\n", name, 100 * l->share, l->values, 100 * (1 - l->p_limit),
            100 * l->least_share, l->largest_z, l->pass ? "pass" : "FAIL");
 }

@@ -8,22 +8,36 @@ float metrics_display(float v, float gain) {
     return x > 0 ? linear_to_srgb(x < 1 ? x : 1) : 0; // NaN: 0
 }
 
-// Sums over values of squared errors and of their variance under Gaussian noise of variance s2:
-// (d + n)^2 with n ~ N(0, s2) has the variance 4 d^2 s2 + 2 s2^2, and the expectation of the
-// measured e^2 is d^2 + s2; so 4 e^2 s2 - 2 s2^2 estimates it. Its sum is below 0 where the s2 are
-// badly known themselves, or where the pictures share their noise: then it tells nothing.
+// Sums over values of squared errors and of what noise of variance s2 makes of them: with n ~ N(0, s2),
+// (d + n)^2 has the variance 4 d^2 s2 + 2 s2^2, and the expectation of the measured e^2 is d^2 + s2.
 struct squares {
-    double sum, variance, noise;
+    double sum, noise;
+    double product, noise2; // sums of e^2 s2 and of s2^2
+    double noise4;
 };
 
 static void add_square(struct squares *q, double e, double s2, double weight) {
-    q->sum += weight * e * e;
-    q->variance += weight * weight * (4 * e * e * s2 - 2 * s2 * s2);
-    q->noise += weight * s2;
+    const double e2 = weight * e * e, w2 = weight * s2;
+    q->sum += e2;
+    q->noise += w2;
+    q->product += e2 * w2;
+    q->noise2 += w2 * w2;
+    q->noise4 += w2 * w2 * w2 * w2;
 }
 
+// Whether the noise tells nothing: the pictures are equal and share it, or their squared errors are less
+// than half of what it makes of equal ones, by more than 4 standard errors sqrt(2 noise4) of that, so
+// that it is not what it is said to be. Noise that a few values have nearly all of may be that far off.
+static bool is_impossible(const struct squares *q) {
+    return q->product < 0.5 * q->noise2 &&
+           (q->sum == 0 || q->noise2 - q->product > 4 * sqrt(2 * q->noise4));
+}
+
+// product - noise2 estimates the sum of d^2 s2, which is not negative. Where it came out so, by chance,
+// the pictures are equal as far as the noise tells.
 static struct estimate finish_squares(const struct squares *q, double n, bool known) {
-    return (struct estimate){q->sum / n, known && q->variance >= 0 ? sqrt(q->variance) / n : NAN};
+    const double variance = 4 * fmax(q->product - q->noise2, 0) + 2 * q->noise2;
+    return (struct estimate){q->sum / n, known && !is_impossible(q) ? sqrt(variance) / n : NAN};
 }
 
 struct sums {

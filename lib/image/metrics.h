@@ -6,8 +6,8 @@
 //
 // Errors: a picture's `variance`, where known, is the squared standard error of each value (what
 // `render --variance` writes). An estimate then carries the standard error that this noise gives
-// it, with independent values assumed; 1.96 of them are a 95 % confidence interval. Where the squared
-// errors are smaller than such noise lets them be, it is not known.
+// it, with independent values assumed; 1.96 of them are a 95 % confidence interval. Where the pictures
+// are equal, or the squared errors smaller than such noise lets them be, it is not known.
 #pragma once
 
 #include "image/image.h"

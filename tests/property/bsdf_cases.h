@@ -24,6 +24,7 @@ struct bsdf_case {
     const char *children[2]; // "NAME OVERRIDES"; NULL: none
     float eta;               // index inside over outside where light crosses; 0: not checked
     float tolerance;         // relative, of pdf and weight between sample and eval; 0: 2e-3
+    float alpha;             // of a nearly smooth lobe, whose rounding counts besides; 0: none
     int draws;               // 0: the row is one set as it stands
     bool steps;              // densities of tables jump: cubature takes them less exactly
     uint32_t waived;         // claims that these parameters give up, as the material's help says

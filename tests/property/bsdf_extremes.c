@@ -269,10 +269,10 @@ static void roughness_meets_smooth(const char *name, const char *more) {
         struct arena arena = {0};
         const char *const distribution = i % 2 ? "ggx" : "beckmann";
         const struct object *rough = make_bsdf(
-            &arena, name, arena_printf(&arena, "alpha=0.000101 distribution=%s %s", distribution,
+            &arena, name, arena_printf(&arena, "alpha=0.00010001 distribution=%s %s", distribution,
                                        more), NULL);
         const struct object *smooth = make_bsdf(
-            &arena, name, arena_printf(&arena, "alpha=0.000099 distribution=%s %s", distribution,
+            &arena, name, arena_printf(&arena, "alpha=0.00009999 distribution=%s %s", distribution,
                                        more), NULL);
         CHECK(!(bsdf_lobes(rough) & LOBE_SPECULAR) && !(bsdf_lobes(smooth) & LOBE_GLOSSY));
         const vec3 wo = direction(cosf(degrees[i / 2] * (PI / 180)), 0.4f, 1);
